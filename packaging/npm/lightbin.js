@@ -15,11 +15,41 @@ const error_names = Object.fromEntries(Object.entries(enums.error).map(([name, n
 const refuse = (message, code = 'not-a-value') => { throw new LightbinError(message, code); };
 const out_of_memory = () => refuse('there is not enough memory', 'out-of-memory');
 
-// The address of an object in the module's memory; 0 once it was disposed of. The Core whose memory that is.
-const address = Symbol('address'), owner = Symbol('owner');
+// The address of an object in the module's memory, what ends it, and the Core whose memory that is.
+const address = Symbol('address'), release = Symbol('release'), owner = Symbol('owner');
 
 const whole = (number, what) => Number.isInteger(number) && number >= -0x80000000 && number <= 0xffffffff ? number
     : refuse(`${what}: ${String(number)} is no whole number of 32 bits`);
+
+/// Refuses an object that has another property than `known`, or is none.
+function only(given, known, what) {
+    if (typeof given !== 'object' || given === null) refuse(`${what} must be an object of ${known.join(', ')}`);
+    for (const key in given)
+        if (!known.includes(key)) refuse(`${what}: there is no '${key}', but ${known.join(', ')}`);
+    return given;
+}
+
+const moved = 'what was read of the module\'s memory before that grew is empty: read it anew after each call';
+
+/// What a program holds of a module's memory. Its address is 0 in none that may be used.
+class Held {
+    #name;
+    #at = 0;
+    constructor(core, name) {
+        this[owner] = core;
+        this.#name = name;
+    }
+    get [address]() {
+        return this.#at !== 0 ? this.#at : refuse(`${this.#name}: it was disposed of`, 'null-argument');
+    }
+    set [address](at) { this.#at = at; }
+    /// The address, which is 0 from then on.
+    [release]() {
+        const at = this.#at;
+        this.#at = 0;
+        return at;
+    }
+}
 
 // The attributes of each kind of light: the number of floats, and the place in a light that has no other given.
 const kinds = {
@@ -93,18 +123,16 @@ class Core {
         const {bytes, members} = structs[name], at = this.c.stackAlloc(bytes), heap = this.heap();
         this.bytes.fill(0, at, at + bytes);
         if (members.size !== undefined) heap.setUint32(at, bytes, true);
-        this.write(name, at, given, what);
+        if (given !== undefined) this.write(name, at, given, what);
         return at;
     }
 
     write(name, to, given, what) {
         const {members} = structs[name], heap = this.heap();
+        only(given, Object.keys(members).filter(key => key !== 'size'), what);
         for (const key in given) {
             const value = given[key];
             if (value === undefined) continue;
-            if (!Object.hasOwn(members, key))
-                refuse(`${what}: there is no '${key}', but `
-                    + Object.keys(members).filter(known => known !== 'size').join(', '));
             const [kind, offset, more] = members[key], at = to + offset;
             if (kind === 'struct') {
                 this.write(more, at, value, `${what}.${key}`);
@@ -160,7 +188,13 @@ class Core {
             }
         const begin = this.staging.reserve(4 * end);
         const floats = new Float32Array(this.c.memory.buffer, begin, end);
-        for (const [array, at] of places) floats.set(array, at);
+        for (const [array, at] of places) {
+            try {
+                floats.set(array, at);
+            } catch (error) {
+                refuse(`an array can't be copied (${error.message}); ${moved}`);
+            }
+        }
         const heap = this.heap();
         for (const [array, to, offset] of this.staged) heap.setUint32(to, begin + 4 * (places.get(array) + offset),
             true);
@@ -178,25 +212,23 @@ class Core {
     matrix(numbers, layout, what) { return {doubles: this.doubles(numbers, 16, what), layout}; }
 
     lights(given, what = 'lights') {
-        const {viewMatrix, layout} = given ?? refuse(`${what} must be an object of spheres, spots or boxes`);
-        const at = this.place('lights', viewMatrix != null && {viewMatrix: this.matrix(viewMatrix, layout,
+        const {viewMatrix, layout} = only(given, ['viewMatrix', 'layout', ...Object.keys(kinds)], what);
+        const at = this.place('lights', viewMatrix == null ? {} : {viewMatrix: this.matrix(viewMatrix, layout,
             `${what}.viewMatrix`)});
-        for (const kind in given)
-            if (Object.hasOwn(kinds, kind)) {
-                if (given[kind] != null)
-                    this.kind(kind, given[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
-            } else if (kind !== 'viewMatrix' && kind !== 'layout') {
-                refuse(`${what}: there is no '${kind}', but viewMatrix, layout, spheres, spots, boxes`);
-            }
+        for (const kind in kinds)
+            if (given[kind] != null)
+                this.kind(kind, given[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
         return at;
     }
 
     kind(kind, given, to, what) {
         const {attributes, stride: usual} = kinds[kind], {members} = structs[kind];
-        const {array: shared, stride = usual, count = this.countOf(kind, given, stride)} = given, heap = this.heap();
-        for (const key in given)
-            if (!Object.hasOwn(attributes, key) && key !== 'array' && key !== 'stride' && key !== 'count')
-                refuse(`${what}: there is no '${key}', but count, array, stride, ${Object.keys(attributes).join(', ')}`);
+        only(given, ['count', 'array', 'stride', ...Object.keys(attributes)], what);
+        const {array: shared, stride = usual} = given, heap = this.heap();
+        if (!(Number.isInteger(stride) && stride > 0))
+            refuse(`${what}.stride: ${String(stride)} is no number of floats`);
+        if (shared !== undefined && !(shared?.length >= 0)) refuse(`${what}.array must be an array of floats`);
+        const {count = this.countOf(kind, given, stride)} = given;
         if (!(Number.isInteger(count) && count >= 0)) refuse(`${what}.count: ${String(count)} is no number of lights`);
         heap.setUint32(to, count, true);
         for (const key in attributes) {
@@ -205,15 +237,15 @@ class Core {
             if (value == null) continue;
             const by_offset = typeof value === 'number', from = by_offset ? shared : value;
             const offset = by_offset ? value : 0, step = by_offset ? stride : floats;
-            if (!(Number.isInteger(offset) && offset >= 0 && Number.isInteger(step) && from?.length >= 0))
+            if (!(Number.isInteger(offset) && offset >= 0 && from?.length >= 0))
                 refuse(`${what}.${key} must be an array of floats, or the place of the floats in each light `
                     + `of ${what}.array`);
             if (by_offset && offset + floats > stride)
                 refuse(`${what}.${key}: a light has ${stride} floats, and these end at ${offset + floats}`,
                     'stride-too-small');
             if (count > 0 && (count - 1) * step + offset + floats > from.length)
-                refuse(`${what}.${key}: the array has ${from.length} floats, and ${count} lights have more`,
-                    'buffer-too-small');
+                refuse(`${what}.${key}: the array has ${from.length} floats, and ${count} lights have more`
+                    + (from.length === 0 ? `; ${moved}` : ''), 'buffer-too-small');
             const at = to + members[key][1];
             this.stage(from, at, offset);
             heap.setUint32(at + 4, 4 * step, true);
@@ -227,22 +259,22 @@ class Core {
     }
 
     /// The address of a view or of slices; 0, which the library refuses, for null.
-    addressOf(object, what) {
-        if (object != null && object[owner] !== this) refuse(`${what} was not made by this module`);
+    addressOf(object, Type, what) {
+        if (object != null && !(object instanceof Type && object[owner] === this))
+            refuse(`${what} was not made by this module`);
         return object?.[address] ?? 0;
     }
 
     inputs(given = {}) {
-        const {slices, bounds} = given;
-        for (const key in given)
-            if (key !== 'slices' && key !== 'bounds') refuse(`inputs: there is no '${key}', but slices, bounds`);
+        const {slices, bounds} = only(given, ['slices', 'bounds'], 'inputs');
         return this.place('inputs', {
-            slices: slices == null ? 0 : this.addressOf(slices, 'inputs.slices'),
+            slices: slices == null ? 0 : this.addressOf(slices, Slices, 'inputs.slices'),
             bounds: bounds == null ? 0 : this.bounds(bounds, 'inputs.bounds'),
         }, 'inputs');
     }
 
     bounds(given, what) {
+        only(given, ['min', 'max', 'backgroundSkipped'], what);
         const lengths = [given.min, given.max].filter(bound => bound != null).map(bound => bound.length);
         return this.place('zBounds', {tiles: lengths.length > 0 ? Math.min(...lengths) : 0, ...given}, what);
     }
@@ -288,54 +320,58 @@ class Block {
     }
 }
 
-class Floats {
+class Floats extends Held {
     #array;
     constructor(core, length) {
-        this[owner] = core;
+        super(core, 'floats');
         this.length = 0;
-        this[address] = 0;
-        this.resize(length);
+        this[address] = this.#allocate(length);
+        this.length = length;
+        this.array.fill(0);
     }
     get array() { return this.#array = this[owner].array(Float32Array, this[address], this.length, this.#array); }
     resize(length) {
-        if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${String(length)} is no number of floats`);
-        const at = length > 0x3fffffff ? 0 : this[owner].c.malloc(Math.max(4 * length, 4));
-        if (at === 0) out_of_memory();
+        const before = this[address], at = this.#allocate(length);
         const array = new Float32Array(this[owner].c.memory.buffer, at, length);
         array.set(this.array.subarray(0, length));
         array.fill(0, this.length);
-        this[owner].c.free(this[address]);
+        this[owner].c.free(before);
         this[address] = at;
         this.length = length;
     }
+    #allocate(length) {
+        if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${String(length)} is no number of floats`);
+        return length > 0x3fffffff ? out_of_memory() : this[owner].c.malloc(Math.max(4 * length, 4));
+    }
     dispose() {
-        this[owner].c.free(this[address]);
-        this[address] = this.length = 0;
+        this[owner].c.free(this[release]());
+        this.length = 0;
     }
 }
 
-class View {
+class View extends Held {
     #core;
     #options = {};
     constructor(core, options) {
-        this.#core = this[owner] = core;
-        this[address] = 0;
-        this.update(options);
+        super(core, 'view');
+        this.#core = core;
+        this.#set(options, (c, at) => { this[address] = core.create(c.lightbin_view_create, at, 0); });
     }
     /// The same view in another module.
     static copy(core, view) {
-        if (!(view instanceof View && view[address] !== 0)) refuse('view must be one that is not disposed of');
-        return new View(core, view.#options);
+        if (!(view instanceof View)) refuse('view must be one of this package');
+        return view[address] && new View(core, view.#options);
     }
     update(options) {
+        const at = this[address];
+        this.#set(options, (c, given) => this.#core.check(c.lightbin_view_update, at, given));
+    }
+    #set(options, call) {
         const core = this.#core, merged = {...this.#options, ...options}, {projection, layout, ...others} = merged;
         core.scope(c => {
             const matrix = core.matrix(projection, layout, 'options.projection');
             const at = core.place('viewOptions', {...others, projection: matrix}, 'options');
-            if (this[address] === 0)
-                this[address] = core.create(c.lightbin_view_create, at, 0);
-            else
-                core.check(c.lightbin_view_update, this[address], at);
+            call(c, at);
             const info = core.place('viewInfo');
             core.check(c.lightbin_view_describe, this[address], info);
             this.info = core.read('viewInfo', info);
@@ -387,25 +423,24 @@ class View {
         });
     }
     dispose() {
-        this.#core.c.lightbin_view_destroy(this[address]);
-        this[address] = 0;
+        this.#core.c.lightbin_view_destroy(this[release]());
         this.#options = {};
     }
 }
 
-class Slices {
+class Slices extends Held {
     #core;
     #margin;
     constructor(core, margin, made) {
-        this.#core = this[owner] = core;
+        super(core, 'slices');
+        this.#core = core;
         this.#margin = margin;
         this[address] = core.scope(made);
         this.count = core.c.lightbin_slices_count(this[address]);
     }
     /// The same slices in another module.
-    static copy(core, slices) {
-        if (!(slices instanceof Slices && slices[address] !== 0))
-            refuse('slices must be ones that are not disposed of');
+    static copy(core, slices, what) {
+        if (!(slices instanceof Slices)) refuse(`${what} must be slices of this package`);
         return slices_of(core, slices.boundaries, slices.#margin);
     }
     get boundaries() {
@@ -427,12 +462,13 @@ class Slices {
                                                this[address]));
     }
     dispose() {
-        this.#core.c.lightbin_slices_destroy(this[address]);
-        this[address] = this.count = 0;
+        this.#core.c.lightbin_slices_destroy(this[release]());
+        this.count = 0;
     }
 }
 
 function slices_of(core, boundaries, margin = 0) {
+    if (!(boundaries?.length >= 0)) refuse('boundaries must be an array of depths');
     return new Slices(core, margin, c => {
         const at = c.stackAlloc(4);
         core.stage(boundaries, at, 0);
@@ -484,7 +520,7 @@ class Lists {
     get words() { return this.#array('words'); }
     /// Takes memory for the lightbin_grid from the stack.
     #placed() {
-        const {wordsPerTile, words, wordCount, ...members} = this.#raw;
+        const {size, wordsPerTile, words, wordCount, ...members} = this.#raw;
         return this.#core.place('grid', members, 'grid');
     }
     encode(format) {
@@ -556,13 +592,14 @@ class Lists {
     }
 }
 
-class Binner {
+class Binner extends Held {
     #core;
     #encoded;
     #words;
     #grid;
     #bits;
     constructor(core, options) {
+        super(core, 'binner');
         this.#core = core;
         this.#encoded = new Block(core);
         this.#words = new Block(core);
@@ -599,12 +636,11 @@ class Binner {
         return core.scope(c => {
             const placed = core.lights(lights), others = core.inputs(inputs);
             core.flush();
-            return body(c, this[address], core.addressOf(view, 'view'), placed, others);
+            return body(c, this[address], core.addressOf(view, View, 'view'), placed, others);
         });
     }
     dispose() {
-        this.#core.c.lightbin_binner_destroy(this[address]);
-        this[address] = 0;
+        this.#core.c.lightbin_binner_destroy(this[release]());
         this.#encoded.free();
         this.#words.free();
         this.#forget();
@@ -624,8 +660,11 @@ const cull = {make: c => c.lightbin_cull_shader, options: 'cullOptions',
               bindings: {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3,
                          lists: 3, grid: 4}};
 
-function shader_options(core, generator, {format, prefix, slots, ...given}) {
-    const c = core.c;
+function shader_options(core, generator, options) {
+    const {options: struct, bindings} = generator, c = core.c;
+    only(options, [...Object.keys(structs[struct].members).filter(key =>
+        key !== 'size' && key !== 'slotsGiven' && !Object.hasOwn(bindings, key)), 'slots'], 'options');
+    const {format, prefix, slots, ...others} = options, given = {...others, language: others.language ?? null};
     if (format !== undefined) given.format = core.place('format', format, 'options.format');
     if (prefix !== undefined) {
         const bytes = new TextEncoder().encode(prefix + '\0');
@@ -633,10 +672,11 @@ function shader_options(core, generator, {format, prefix, slots, ...given}) {
         new Uint8Array(c.memory.buffer).set(bytes, given.prefix);
     }
     if (slots !== undefined) {
-        for (const [name, binding] of Object.entries(generator.bindings)) given[name] = {binding};
+        only(slots, Object.keys(bindings), 'options.slots');
+        for (const [name, binding] of Object.entries(bindings)) given[name] = {binding};
         Object.assign(given, slots, {slotsGiven: 1});
     }
-    return core.place(generator.options, given, 'options');
+    return core.place(struct, given, 'options');
 }
 
 function shader_text(core, generator, options) {
@@ -656,11 +696,12 @@ function shader_text(core, generator, options) {
 }
 
 /// What the passes of cullShader() need for a view. The view and the slices are copied for the call.
-function cull_plan(core, view, options, {lights, entries, slices, viewMatrix, layout, ...others}) {
-    for (const key in others) refuse(`room: there is no '${key}', but lights, entries, slices, viewMatrix, layout`);
+function cull_plan(core, view, options, room) {
+    only(room, ['lights', 'entries', 'slices', 'viewMatrix', 'layout'], 'room');
+    const {lights, entries, slices, viewMatrix, layout} = room;
     const copies = [View.copy(core, view)];
     try {
-        if (slices != null) copies.push(Slices.copy(core, slices));
+        if (slices != null) copies.push(Slices.copy(core, slices, 'slices'));
         return core.scope(c => {
             const {members} = structs.cullPlan, names = Object.keys(enums.cullPass);
             const at = core.place('cullPlan'), count = c.stackAlloc(4), placed = shader_options(core, cull, options);
@@ -716,17 +757,20 @@ class Lightbin {
     view(options) { return new View(this.#core, options); }
     binner(options) { return new Binner(this.#core, options); }
     floats(length) { return new Floats(this.#core, length); }
-    exponentialSlices({count, first, last, margin = 0}) {
+    exponentialSlices(options) {
+        const {count, first, last, margin = 0} = only(options, ['count', 'first', 'last', 'margin'], 'options');
         const core = this.#core;
         return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'), first,
             last, margin, 0));
     }
-    linearSlices({count, begin, end, margin = 0}) {
+    linearSlices(options) {
+        const {count, begin, end, margin = 0} = only(options, ['count', 'begin', 'end', 'margin'], 'options');
         const core = this.#core;
         return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'), begin, end,
             margin, 0));
     }
-    slicesFromBoundaries({boundaries, margin = 0}) {
+    slicesFromBoundaries(options) {
+        const {boundaries, margin = 0} = only(options, ['boundaries', 'margin'], 'options');
         return slices_of(this.#core, boundaries, margin);
     }
     shader(options) { return this.#text(snippet, options); }
@@ -750,10 +794,10 @@ class Lightbin {
             return core.create(core.c.lightbin_advise, ...given, placed, 0);
         });
     }
-    async adviseSlices(view, lights, {clusters, zBins, depths, columns, rows, ...costs}) {
+    async adviseSlices(view, lights, {clusters, zBins, depths, columns, rows, ...costs} = {}) {
         if (!(depths?.length >= columns * rows)) refuse('depths must have columns * rows numbers', 'buffer-too-small');
         const core = await this.#load_advice();
-        const slices = [clusters, zBins].map(from => slices_of(core, from?.boundaries ?? [])[address]);
+        const slices = Object.entries({clusters, zBins}).map(([name, from]) => Slices.copy(core, from, name)[address]);
         return plans(core, view, lights, costs, (view, lights, costs) => {
             const at = core.c.stackAlloc(4);
             core.stage(depths, at, 0);
@@ -808,7 +852,8 @@ async function instantiate(module) {
     return exports;
 }
 
-export async function load({simd = hasSimd(), wasm, shaders, advice} = {}) {
+export async function load(options = {}) {
+    const {simd = hasSimd(), wasm, shaders, advice} = only(options, ['simd', 'wasm', 'shaders', 'advice'], 'options');
     const module = await compile(wasm ?? (simd ? new URL('./lightbin_simd.wasm', import.meta.url)
                                                : new URL('./lightbin.wasm', import.meta.url)));
     const load_shaders = async () => instantiate(await compile(shaders ?? new URL('./shaders.wasm', import.meta.url)));

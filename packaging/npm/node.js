@@ -7,8 +7,8 @@ export {LightbinError, hasSimd} from './lightbin.js';
 
 const file = name => readFile(new URL(name, import.meta.url));
 
-export function load({simd = hasSimd(), wasm, shaders, advice} = {}) {
+export function load({simd = hasSimd(), wasm, shaders, advice, ...others} = {}) {
     return load_module({simd, wasm: wasm ?? file(simd ? './lightbin_simd.wasm' : './lightbin.wasm'),
                         shaders: shaders ?? (() => file('./shaders.wasm')),
-                        advice: advice ?? (() => file('./advice.wasm'))});
+                        advice: advice ?? (() => file('./advice.wasm')), ...others});
 }

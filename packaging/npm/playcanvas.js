@@ -69,7 +69,8 @@ export class ClusteredLights {
     #floats;
     #texels;  // of a light in PlayCanvas' texture
 
-    constructor(lightbin, app, {depthTest = 'no-depth-test'} = {}) {
+    constructor(lightbin, app, {depthTest = 'no-depth-test', ...others} = {}) {
+        for (const key in others) throw new Error(`options: there is no '${key}', but depthTest`);
         const device = app.graphicsDevice, {empty} = app.renderer.worldClustersAllocator;
         if (updates.has(device)) throw new Error('this application has ClusteredLights');
         if (app.frame > 0) throw new Error('ClusteredLights must be made before the first frame, which makes shaders');
@@ -204,23 +205,26 @@ export class ClusteredLights {
             array[at++] = last;
         };
         buffer.lightsTexture = {width: texels};  // for addLightData(), which puts each light in a row of its own
-        for (let i = 1, row = 4 * texels; i <= count; ++i, row += 4 * texels) {
-            const {light} = usedLights[i];
-            buffer.addLightData(light, i);
-            const x = rows[row], y = rows[row + 1], z = rows[row + 2], radius = rows[row + 3] + margin;
-            if (i <= points) {
-                write(x, y, z, radius);
-                continue;
+        try {
+            for (let i = 1, row = 4 * texels; i <= count; ++i, row += 4 * texels) {
+                const {light} = usedLights[i];
+                buffer.addLightData(light, i);
+                const x = rows[row], y = rows[row + 1], z = rows[row + 2], radius = rows[row + 3] + margin;
+                if (i <= points) {
+                    write(x, y, z, radius);
+                    continue;
+                }
+                // The cone of PlayCanvas' shader is narrower than the light's by a hundredth, which is more than the
+                // halfs round by in which it has the cosine, down to a tenth of a degree.
+                const angle = Math.max(light.outerConeAngle, 0.1) * Math.PI / 180, is_wide = angle > Math.PI / 2;
+                const behind = margin / (is_wide ? 1 : Math.sin(angle));
+                const axis_x = rows[row + 4], axis_y = rows[row + 5], axis_z = rows[row + 6];
+                write(x - behind * axis_x, y - behind * axis_y, z - behind * axis_z, radius + behind);
+                write(axis_x, axis_y, axis_z, is_wide ? -1 : Math.cos(angle));
             }
-            // The cone of PlayCanvas' shader is narrower than the light's by a hundredth, which is more than the halfs
-            // round by in which it has the cosine, down to a tenth of a degree.
-            const angle = Math.max(light.outerConeAngle, 0.1) * Math.PI / 180, is_wide = angle > Math.PI / 2;
-            const behind = margin / (is_wide ? 1 : Math.sin(angle));
-            const axis_x = rows[row + 4], axis_y = rows[row + 5], axis_z = rows[row + 6];
-            write(x - behind * axis_x, y - behind * axis_y, z - behind * axis_z, radius + behind);
-            write(axis_x, axis_y, axis_z, is_wide ? -1 : Math.cos(angle));
+        } finally {
+            buffer.lightsTexture = texture;
         }
-        buffer.lightsTexture = texture;
     }
 
     #bin({usedLights}, points) {

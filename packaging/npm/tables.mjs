@@ -46,10 +46,13 @@ for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.
     struct.bytes = Math.ceil(struct.bytes / struct.alignment) * struct.alignment;
 }
 
+// Members that the package leaves out, so that JavaScript refuses their names.
+const left_out = /^(unused.*|isa|coverage|threads|gap_min|gap_max|transparent_max)$/;
+
 const used = new Set(Object.keys(structs).filter(named)), used_enums = new Set();
 for (const name of used)  // which grows as structs in structs are found
-    for (const [kind, , more] of Object.values(structs[name].members))
-        if (more !== undefined) (kind === 'struct' ? used : used_enums).add(more);
+    for (const [member, [kind, , more]] of Object.entries(structs[name].members))
+        if (more !== undefined && !left_out.test(member)) (kind === 'struct' ? used : used_enums).add(more);
 const entries = (names, shown) =>
     [...names].map(name => `    ${camel(name)}: ${JSON.stringify(shown(name))},\n`).join('');
 fs.writeFileSync(js, `// Made by tables.mjs from lightbin.h.
@@ -57,7 +60,7 @@ export const enums = {
 ${entries(used_enums, name => enums[name])}};
 export const structs = {
 ${entries(used, name => ({bytes: structs[name].bytes, members: Object.fromEntries(
-    Object.entries(structs[name].members).filter(([member]) => !member.startsWith('unused'))
+    Object.entries(structs[name].members).filter(([member]) => !left_out.test(member))
         .map(([member, [kind, offset, more]]) => [camel(member), [kind, offset, ...more ? [camel(more)] : []]]))}))}};
 `);
 fs.writeFileSync(inl, [...used].flatMap(name => [

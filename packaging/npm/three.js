@@ -72,7 +72,10 @@ export class ClusteredLights {
         lightbin_lights: {value: null},
     };
 
-    constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = 'box', footprint = 'rectangle'} = {}) {
+    constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = 'box', footprint = 'rectangle',
+                           ...others} = {}) {
+        for (const key in others)
+            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint`);
         this.#lightbin = lightbin;
         this.#options = {tileSize, slices, firstSlice};
         this.#binner = lightbin.binner({slicing: 'clusters', depthTest, footprint});

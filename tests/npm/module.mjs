@@ -205,6 +205,10 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
         const gone = lightbin.view(square);
         gone.dispose();
         gone.dispose();
+        const ended = lightbin.floats(8), old_slices = lightbin.linearSlices({count: 4, begin: 1, end: 100});
+        for (const made of [ended, ended, old_slices, old_slices]) made.dispose();
+        const detached = new Float32Array(80);
+        structuredClone(detached.buffer, {transfer: [detached.buffer]});
         const expected = lists_of(binner.bin(view, {spheres: {array: spheres}}));
         const other = await load(), foreign = other.floats(80), strange = other.view(square),
             lights = {spheres: {array: spheres}};
@@ -226,11 +230,20 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => view.update({tileSize: -3}), 'tile-size-out-of-range', /-3/],
             [() => lightbin.binner({slicing: 'toString'}), 'not-a-value', /is none of no-slicing, clusters, z-bins$/],
             [() => lightbin.binner({depthTest: 'split-box'}), 'left-out', /LIGHTBIN_NO_SPLIT_BOX/],
-            [() => lightbin.binner({coverage: true}), 'left-out', /LIGHTBIN_NO_COVERAGE/],
+            [() => lightbin.binner({coverage: true}), 'not-a-value', /there is no 'coverage'/],
+            [() => lightbin.binner({isa: 'scalar'}), 'not-a-value',
+                /^options: there is no 'isa', but ids, footprint, depthTest, slicing$/],
+            [() => lightbin.linearSlices({count: 4, near: 1, far: 2}), 'not-a-value',
+                /^options: there is no 'near', but count, begin, end, margin$/],
+            [() => lightbin.exponentialSlices({count: 4, first: 1, last: 2, margn: 0.1}), 'not-a-value',
+                /^options: there is no 'margn', but count, first, last, margin$/],
+            [() => lightbin.exponentialSlices(), 'not-a-value', /^options must be an object of count, first/],
+            [() => lightbin.slicesFromBoundaries({}), 'not-a-value', /^boundaries must be an array/],
+            [() => lightbin.slicesFromBoundaries([1, 2]), 'not-a-value', /^options: there is no '0'/],
             [() => lightbin.binner({depthTest: 'interval', slicing: 'clusters'}), 'options-not-together', /./],
             [() => lightbin.linearSlices({count: 0, begin: 1, end: 2}), 'no-slices', /./],
             [() => lightbin.slicesFromBoundaries({boundaries: [3, 2]}), 'slices-do-not-ascend', /./],
-            [() => binner.bin(view), 'not-a-value', /^lights must be an object of spheres, spots or boxes$/],
+            [() => binner.bin(view), 'not-a-value', /^lights must be an object of viewMatrix, layout, spheres/],
             [() => binner.bin(null, lights), 'null-argument', /^view: /],
             [() => binner.bin(gone, lights), 'null-argument', /^view: /],
             [() => binner.bin(view, {balls: {}}), 'not-a-value', /there is no 'balls'/],
@@ -240,13 +253,26 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
                 /^lights.spheres.centre: /],
             [() => binner.bin(view, {spheres: {array: spheres, count: 21}}), 'buffer-too-small',
                 /^lights.spheres.centre: the array has 80 floats/],
+            [() => binner.bin(view, {spheres: {array: spheres, stride: 0}}), 'not-a-value',
+                /^lights.spheres.stride: 0 is no number of floats$/],
+            [() => binner.bin(view, {spheres: {array: spheres.buffer}}), 'not-a-value',
+                /^lights.spheres.array must be an array of floats$/],
+            [() => binner.bin(view, {spheres: {array: ended}}), 'null-argument', /^floats: it was disposed of$/],
+            [() => binner.bin(view, {spheres: {array: detached}}), 'not-a-value', /can't be copied.*read it anew/],
+            [() => binner.bin(view, {spheres: {array: detached, count: 1}}), 'buffer-too-small', /read it anew/],
+            [() => ended.resize(4), 'null-argument', /^floats: it was disposed of$/],
+            [() => gone.update(square), 'null-argument', /^view: it was disposed of$/],
+            [() => gone.windowDepth(3), 'null-argument', /^view: /],
+            [() => old_slices.at(3), 'null-argument', /^slices: it was disposed of$/],
+            [() => sliced.bin(view, lights, {slices: old_slices}), 'null-argument', /^slices: it was disposed of$/],
+            [() => sliced.bin(view, lights, {slices: view}), 'not-a-value', /^inputs.slices was not made/],
             [() => binner.bin(view, {spheres: {array: spheres, radius: 4}}), 'stride-too-small',
                 /^lights.spheres.radius: a light has 4 floats, and these end at 5$/],
             [() => binner.bin(view, {spheres: {array: spheres, centre: -1}}), 'not-a-value',
                 /^lights.spheres.centre must be/],
             [() => binner.bin(view, {spheres: {centre: spheres, count: 2}}), 'null-argument',
                 /^lights.spheres.radius: /],
-            [() => binner.bin(view, {spheres: {array: 80, count: 1}}), 'not-a-value', /^lights.spheres.centre must be/],
+            [() => binner.bin(view, {spheres: {array: 80, count: 1}}), 'not-a-value', /^lights.spheres.array must be/],
             [() => binner.bin(strange, lights), 'not-a-value', /^view was not made by this module$/],
             [() => lightbin.linearSlices({count: 2.5, begin: 1, end: 2}), 'not-a-value',
                 /^count: 2.5 is no whole number/],
@@ -291,9 +317,43 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             message: /'basic' is none of glsl-330/});
         await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
         await assert.rejects(lightbin.shader({language: 'wgsl', prefix: '1x'}), {code: 'not-a-prefix'});
+        for (const [options, message] of [
+            [undefined, /^options must be an object of language/], [{}, /^options.language: 'null' is none of glsl-330/],
+            [{tilesize: 8}, /there is no 'tilesize'/], [{tiles: {binding: 1}}, /there is no 'tiles'/],
+            [{slots: {tile: {}}}, /^options.slots: there is no 'tile', but tiles, lists/],
+            [{slots: {tiles: 3}}, /^options.tiles must be an object of binding, set/],
+        ]) {
+            const given = options && (message.source.includes('language') ? options : {language: 'wgsl', ...options});
+            await assert.rejects(lightbin.shader(given), {code: 'not-a-value', message});
+        }
         assert.equal(lightbin.allocations, 0);
     }
     await assert.rejects(load({wasm: new Uint8Array(8)}), WebAssembly.CompileError);
+    await assert.rejects(load({smid: false}), {code: 'not-a-value', message: /there is no 'smid', but simd, wasm/});
+});
+
+test('each option that a sentence offers is in lightbin.d.ts, and each option there is offered', async () => {
+    const text = fs.readFileSync(path.join(folder, 'lightbin.d.ts'), 'utf8').replaceAll(/\/\*.*?\*\//gs, '');
+    const [lightbin] = modules, view = lightbin.view(square), binner = lightbin.binner();
+    const grid = binner.bin(view, {}), nonsense = {nonsense: 1};
+    for (const [name, ask] of Object.entries({
+        ViewOptions: () => lightbin.view({...square, ...nonsense}), BinnerOptions: () => lightbin.binner(nonsense),
+        Lights: () => binner.bin(view, nonsense), Inputs: () => binner.bin(view, {}, nonsense),
+        ZBounds: () => binner.bin(view, {}, {bounds: nonsense}), ListFormat: () => grid.encode(nonsense),
+        ShaderOptions: () => lightbin.shader(nonsense), ReduceShaderOptions: () => lightbin.reduceShader(nonsense),
+        CullShaderOptions: () => lightbin.cullShader(nonsense), LoadOptions: () => load(nonsense),
+        CullRoom: () => lightbin.planCull(view, {language: 'wgsl'}, nonsense),
+    })) {
+        const {message} = await Promise.resolve().then(ask).catch(error => error);
+        const offered = new Set(message?.match(/there is no 'nonsense', but (.*)/)?.[1].split(', '));
+        // The layout of a view's matrix is a member of the matrix in lightbin.h.
+        if (name === 'ViewOptions') offered.add('layout');
+        const [, body] = text.match(new RegExp(`interface ${name} \\{(.*?)\\n\\}`, 's'));
+        const typed = new Set([...body.matchAll(/^    (\w+)\??:/gm)].map(([, member]) => member));
+        assert.deepEqual([...offered].sort(), [...typed].sort(), name);
+    }
+    view.dispose();
+    binner.dispose();
 });
 
 test('thousands of calls allocate nothing, and what is disposed of is free', () => {
@@ -527,7 +587,7 @@ test('shaders that make lists of lights on the GPU say what they refuse', async 
     await assert.rejects(plan({}, {room: 1}), {message: /there is no 'room'/});
     view.dispose();
     slices.dispose();
-    await assert.rejects(plan({}), {message: /^view must be one/});
+    await assert.rejects(plan({}), {message: /^view: it was disposed of/});
     assert.equal(lightbin.allocations, 0);
 });
 
@@ -563,10 +623,12 @@ test('advice weighs the ways to light a view by the lists that they make', async
         }
         await assert.rejects(lightbin.adviseSlices(view, lights, {clusters, zBins, depths: max, columns: 21, rows: 20}),
             {code: 'buffer-too-small'});
+        await assert.rejects(lightbin.adviseSlices(view, lights, {clusters, depths: max, columns: 20, rows: 20}),
+            {message: /^zBins must be slices/});
         await assert.rejects(lightbin.advise(view, lights, {overdrawn: 2}), {message: /there is no 'overdrawn'/});
         for (const made of [clusters, zBins, array]) made.dispose();
         view.dispose();
-        await assert.rejects(lightbin.advise(view, lights), {message: /^view must be one/});
+        await assert.rejects(lightbin.advise(view, lights), {message: /^view: it was disposed of/});
         assert.equal(lightbin.allocations, 0);
     }
 });

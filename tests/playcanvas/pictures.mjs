@@ -279,6 +279,23 @@ test("what is not a light in the world changes no other light; PlayCanvas' view 
     assert.ok(results.seen.pixels > 1000, 'the cells are to be seen');
 });
 
+test('where PlayCanvas fails to write a light, the next frame is right', async () => {
+    const {bytes, message} = await page.evaluate(() => {
+        const {lists} = stages, [{lightsBuffer: buffer}] = lists.drawn, before = lists.draw();
+        let message;
+        buffer.addLightData = () => { throw new Error('no such light'); };
+        try {
+            lists.render();
+        } catch (error) {
+            ({message} = error);
+        }
+        delete buffer.addLightData;
+        return {bytes: difference(before, lists.draw()), message};
+    });
+    assert.equal(message, 'no such light');
+    same(bytes, 'the next frame');
+});
+
 test('what is refused, and dispose()', async () => {
     const results = await page.evaluate(async () => {
         const message = body => {
@@ -291,13 +308,15 @@ test('what is refused, and dispose()', async () => {
         };
         const {lists, own} = stages;
         const twice = message(() => new ClusteredLights(lightbin, lists.app));
+        const misspelt = message(() => new ClusteredLights(lightbin, own.app, {depthtest: 'box'}));
         const late = message(() => new ClusteredLights(lightbin, own.app));
         lists.clusters.dispose();
         const disposed = message(() => lists.render());
         for (const stage of Object.values(stages)) stage.destroy();
-        return {twice, late, disposed, allocations: lightbin.allocations};
+        return {twice, misspelt, late, disposed, allocations: lightbin.allocations};
     });
     assert.match(results.twice, /has ClusteredLights/);
+    assert.match(results.misspelt, /there is no 'depthtest', but depthTest/);
     assert.match(results.late, /before the first frame/);
     assert.notEqual(results.disposed, '');
     assert.equal(results.allocations, 0);

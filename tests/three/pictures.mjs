@@ -144,6 +144,44 @@ test('shadows, directional lights and lights that change stay as three.js draws 
     assert.equal(results.allocations, 0);
 });
 
+test('a worker makes the same lists, of the module that it was sent or loads itself', async () => {
+    const {lists, expected} = await page.evaluate(async () => {
+        const {lightbin, camera} = stage, array = new Float32Array(4 * 500);
+        for (let i = 0; i < 500; ++i) array.set([i % 23 - 11, i % 13 - 6, -1 - i % 41, 0.5 + i % 3], 4 * i);
+        const view = {projection: [...camera.projectionMatrix.elements], width: 320, height: 200}, spheres = {array};
+        const made = lightbin.view(view), binner = lightbin.binner(), {ranges, ids} = binner.bin(made, {spheres});
+        const expected = {ranges: [...ranges], ids: [...ids]}, lists = [];
+        made.dispose();
+        binner.dispose();
+        for (const options of [{wasm: lightbin.module}, {}, {simd: false}]) {
+            const worker = new Worker('worker.js', {type: 'module'});
+            const answer = new Promise((resolve, reject) => {
+                worker.onmessage = ({data}) => resolve(data);
+                worker.onerror = ({message}) => reject(new Error(message));
+            });
+            worker.postMessage({options, view, spheres});
+            const {simd, ranges, ids} = await answer;
+            lists.push({simd, ranges: [...ranges], ids: [...ids]});
+            worker.terminate();
+        }
+        return {lists, expected};
+    });
+    assert.ok(expected.ids.length > 500);
+    assert.deepEqual(lists, [true, true, false].map(simd => ({simd, ...expected})));
+});
+
+test('an option that is misspelt is named', async () => {
+    const message = await page.evaluate(async () => {
+        const {ClusteredLights} = await import('lightbin/three');
+        try {
+            new ClusteredLights(stage.lightbin, {tilesize: 16});
+        } catch (error) {
+            return error.message;
+        }
+    });
+    assert.match(message, /there is no 'tilesize', but tileSize, slices/);
+});
+
 test('the program of docs/threejs.md', async () => {
     const text = fs.readFileSync(new URL('../../docs/threejs.md', import.meta.url), 'utf8');
     const blocks = [...text.matchAll(/^```js\n(.*?)^```$/gms)].map(([, block]) => block);
