@@ -11,8 +11,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 template <Footprint footprint, DepthTest depth_test>
 inline constexpr bool has_tests = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
-/// The kind of lights whose binning kernel bins lights of a kind. Kernels without a depth test read footprints only,
-/// and so those for spheres serve all kinds.
+/// The kind of lights that the binning kernel for lights of `kind` is compiled for. Kernels without a depth test read
+/// footprints only, so all kinds share those for spheres.
 template <DepthTest depth_test, LightKind kind>
 inline constexpr LightKind kind_read = depth_test != DepthTest::none ? kind : LightKind::sphere;
 
@@ -24,7 +24,7 @@ inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test ==
 struct BlockList {
     std::uint32_t begin, count;
 
-    /// The number of lights, rounded up to the 8 or 16 that the kernels emit at once: to 8, or to a multiple of 16.
+    /// The number of lights, rounded up to 8 or to a multiple of 16: kernels emit 8 or 16 lights at a time.
     std::uint32_t padded_count() const { return count <= 8 ? 8 : (count + 15) & ~15u; }
 };
 
@@ -52,7 +52,7 @@ struct Scratch {
     Buffer<std::uint8_t> picked_columns;
     Buffer<std::uint64_t> row_words;
 
-    Buffer<float> slab_ends;  ///< the sides of the boxes around a depth slice's cells, which SlabBoxes::ends points to
+    Buffer<float> slab_ends;  ///< the memory of the arrays SlabBoxes::ends
 
     /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte
     /// for each light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count()
@@ -66,14 +66,14 @@ struct Scratch {
 /// Returns an upper bound on the number of elements, which kernels count in 32 bits, of the lists of all blocks (8x8
 /// tiles) of a slice: one for each light and each block that its rectangle can meet, at whichever tile row the first
 /// row of blocks begins, and 64 per block, because lists are padded to whole vectors.
-inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& lit) {
+inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& slice) {
     const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
     std::uint64_t size = 64 * width * height;
-    for (const FootprintRun& run : lit.runs)
+    for (const FootprintRun& run : slice.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
-            size += (lit.lights.x1[i] / 8u - lit.lights.x0[i] / 8u + std::uint64_t{1}) *
-                    ((lit.lights.y1[i] - lit.lights.y0[i] + 7u) / 8 + 1);
+            size += (slice.lights.x1[i] / 8u - slice.lights.x0[i] / 8u + std::uint64_t{1}) *
+                    ((slice.lights.y1[i] - slice.lights.y0[i] + 7u) / 8 + 1);
     return size;
 }
 

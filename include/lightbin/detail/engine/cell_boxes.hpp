@@ -16,9 +16,9 @@
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
 // - in a slice (SlabCells) the squared distances along z and y are subtracted from the squared radius, and the
-//   rest is compared with that along x. Where it could be more, each difference is off by u of the squared radius, as
-//   much as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that then,
-//   as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
+//   rest is compared with that along x. Where a sphere meets a box, each difference loses at most u of the squared
+//   radius, like a sum above. Two differences that are flushed to zero lose 2^-125. The 2^-125 that is added covers
+//   these or a squared radius that is flushed, never both: the latter leaves 2^-125 - 0 - 0, which is not flushed.
 #pragma once
 
 #include <lightbin/options.hpp>
@@ -61,7 +61,7 @@ template <DepthTest depth_test>
 inline constexpr unsigned cell_arrays = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
                                                                            : 2;
-/// With split_box a tile has two cells: how many floats after the first one's arrays the second one's begin.
+/// With split_box a tile has two cells: the arrays of the second begin this many floats after those of the first.
 inline constexpr unsigned next_cell = 64 * cell_arrays<DepthTest::box>;
 
 /// A sphere as the depth tests read it, in view space. The camera's signs are applied: tile indices grow with x and y,

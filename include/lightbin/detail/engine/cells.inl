@@ -74,10 +74,11 @@ inline void fill_8_floats(float* to, float value) {
 }
 
 /// Stores what a depth test compares lights with, for the block that begins at tile column 8 * x and tile row `top`, in
-/// arrays of one float for each of its 64 tiles. With DepthTest::interval these are the minimum and maximum depths. With
-/// DepthTest::box they are the depths z0 and z1, low x, high x, low y and high y of the box around each tile's cell.
-/// With split_box they are these six for the cells in front of the tiles' depth gaps (see ZBounds), then six for the
-/// cells behind the gaps. With box and split_box the edges of the tiles themselves are stored in `edges`. Returns a bit for each tile whose Z bounds are not empty.
+/// arrays of one float for each of its 64 tiles. With DepthTest::interval these are the minimum and maximum depths.
+/// With DepthTest::box they are the depths z0 and z1, low x, high x, low y and high y of the box around each tile's
+/// cell. With split_box they are these six for the cells in front of the tiles' depth gaps (see ZBounds), then six for
+/// the cells behind the gaps. With box and split_box the edges of the tiles themselves are stored in `edges`. Returns a
+/// bit for each tile whose Z bounds are not empty.
 template <DepthTest depth_test, class Id>
 std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells, TileEdges& edges) {
     constexpr bool boxes = with_boxes<depth_test>;

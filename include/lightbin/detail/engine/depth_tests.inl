@@ -59,10 +59,10 @@ LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_
     return missed;
 }
 
-/// Returns a mask of the cells in a vector that a spot or a Box misses: those whose boxes, stored by store_box(), are
-/// missed by its ball, the sphere that it is a part of, and those that lie outside of one of the half spaces around it:
-/// four around a spot, six around a Box. A Box that lies in its ball as a whole has a ball of infinite radius, which is
-/// not tested. (Unreal tests one such half space of a spot, chosen for each cell.) Arguments: see or_outside().
+/// Returns a mask of the cells in a vector that a spot or a Box misses. These are the cells whose boxes, stored by
+/// store_box(), do not meet its ball, the sphere that it is a part of, and the cells outside of one of the half spaces
+/// around it: four around a spot, six around a Box. The ball of a Box that its sphere does not cut has an infinite
+/// radius and is not tested. (Unreal tests one such half space, chosen for each cell.) Arguments: see or_outside().
 template <bool orthographic, class Shape>
 LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, const float* y_edges,
                                   const TestedShape<Shape>& light) {
@@ -224,14 +224,14 @@ struct NoSlab {
     NoSlab(const SlabBoxes&, unsigned, unsigned) {}
 };
 
-/// The lights among up to 64 of a block's list that are tested as the type Light, each at its position among the 64.
+/// Up to 64 consecutive lights of a block's list, of which lights[i] is set if light i is tested as the type Light.
 template <class Light> struct TestedLights {
     Light lights[64];
     std::uint64_t in_range = 0;  ///< bit i: lights[i] was set by add(), and meets the view depths that add() was given
 
     /// Constructs lights[i] from `from`, in place, as copying an object just stored in parts would stall on store
-    /// forwarding. Its bit in in_range is set if it meets `depths`, the view depths of all the block's cells together.
-    /// Most lights that miss all of the cells miss these depths.
+    /// forwarding. Sets its bit in in_range if it meets `depths`, the interval of the view depths of all the block's
+    /// cells: this cheap test excludes most lights that miss all of the cells.
     template <class... From>
     LIGHTBIN_INLINE void add(std::uint32_t i, const DepthInterval& depths, const From&... from) {
         const Light& light = *std::construct_at(lights + i, from...);
@@ -342,7 +342,7 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
                        *const rows = scratch.list_rows.data() + list.begin;
     std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
     std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{64});
-    std::uint32_t left = 0;
+    std::uint32_t kept = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
         [[maybe_unused]] std::uint64_t met[64];
@@ -356,12 +356,12 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
                 tiles &= met[i - begin] & cells.drawn;
             if constexpr (footprint == Footprint::silhouette)
                 tiles = silhouette_tiles(job.lights, light, x, top, tiles);
-            indices[left] = job.lights.ids[light];
-            masks[left] = tiles;
-            left += tiles != 0;
+            indices[kept] = job.lights.ids[light];
+            masks[kept] = tiles;
+            kept += tiles != 0;
         }
     }
-    list.count = left;
+    list.count = kept;
 }
 
 /// Lists the lights of the blocks of 8x8 tiles in the 8 rows from `top` on, and fills the table of

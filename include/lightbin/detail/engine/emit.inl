@@ -15,7 +15,8 @@ struct RowLights {
     std::uint32_t count;
 };
 
-/// Returns the lights of a row: all lights of the block's list or, if few of many are in the row, a copy of these few.
+/// Returns the lights from which a row is emitted: none if the row has none, else those of the whole block or, if the
+/// block has more than 64 lights and at most half of them are in the row, a copy of those in the row.
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
@@ -178,7 +179,7 @@ LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob<>& job, Scratch& s
     return offset - share.offset;
 }
 
-/// bin_blocks_by() for certain options.
+/// bin_blocks_by() with the list_lights() of the given options.
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
 std::uint64_t bin_blocks(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
     SlabBoxes slab;
@@ -239,7 +240,7 @@ LIGHTBIN_SHARED_PART void write_bits_by(const BinJob<>& job, Scratch& scratch, u
     }
 }
 
-/// write_bits_by() for certain options.
+/// write_bits_by() with the list_lights() of the given options.
 template <Footprint footprint, DepthTest depth_test, LightKind kind>
 void write_bits(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
                 std::size_t stride) {

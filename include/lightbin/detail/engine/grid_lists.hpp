@@ -14,8 +14,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 template <DepthTest depth_test, LightKind kind, bool sliced>
 inline constexpr bool by_slab = sliced && depth_test == DepthTest::box && kind != LightKind::box;
 
-/// What a TileLists is asked for, as constants. The file that implements lightbin.h has in its place a struct whose
-/// `tested`, `with_boxes` and `sliced` are set at run time.
+/// The features that a TileLists needs, as constants. The implementation of lightbin.h passes a struct in place of this
+/// whose `tested`, `with_boxes` and `sliced` are set at run time.
 template <bool any_test, bool any_box, bool any_slice> struct FixedLists {
     static constexpr bool may_test = any_test, may_have_boxes = any_box, may_slice = any_slice;
     /// Whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed; whether the test
@@ -196,9 +196,9 @@ private:
         return job;
     }
 
-    static std::optional<Error> check_list_size(const View& view, const FootprintSlice& lit) {
-        if (lit.area > surely_listed_area)
-            if (const std::uint64_t size = list_size_bound(camera_of(view), lit); size > max_entries)
+    static std::optional<Error> check_list_size(const View& view, const FootprintSlice& slice) {
+        if (slice.area > surely_listed_area)
+            if (const std::uint64_t size = list_size_bound(camera_of(view), slice); size > max_entries)
                 return Error{ErrorCode::too_many_list_places, size, max_entries};
         return {};
     }

@@ -7,7 +7,7 @@
 //   2. A band's list is compared with the 8 columns of each of its blocks in the same way.
 //
 // No branch depends on which tiles a light covers. Coordinates are bytes that count from the first band and from the
-// begin of a panel of 248 tile columns; a wider grid has several panels.
+// first column of a panel of 248 tile columns; a wider grid has several panels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>

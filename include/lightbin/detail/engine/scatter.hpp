@@ -58,7 +58,7 @@ std::uint32_t count_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin
 
 /// Prepends an id to the list of each tile in a rectangle, and moves the tile's offset down to it.
 ///
-/// row, end  the rectangle's first tile, and the end of the grid's row below the rectangle
+/// row, end  the rectangle's first tile, and the first tile of the grid's row below the rectangle
 /// pitch     tiles from one row of the grid to the next
 /// columns   tiles in each of the rectangle's rows
 ///

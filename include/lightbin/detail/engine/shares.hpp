@@ -16,8 +16,8 @@ struct Share {
     std::uint64_t entries;
     // Only for build_rectangles(), where threads write neighbouring parts of one index list.
     std::uint64_t before = 0;  ///< the number of list entries, pairs of a light and a tile, in all earlier shares
-    /// The first of the share's last tile rows, which have as many entries as kernels may write past their list's end,
-    /// where the next share's entries are: these rows are built in separate memory and copied.
+    /// Kernels write past their list's end, where the next share's entries are. So a tail of tile rows, tail_begin to
+    /// end - 1, with at least as many entries as a kernel may write there, is built in separate memory and copied.
     unsigned tail_begin = 0;
     std::uint64_t tail_entries = 0;  ///< the number of entries of the tile rows tail_begin..end-1
 };
@@ -84,11 +84,11 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 }
 
 /// Builds all shares in parallel, each share's list at its final place in `list`. Lights are listed in every tile of
-/// their rectangles, so each share's number of entries is known beforehand. Kernels write past their list's end, where
-/// another thread may be at work: so the last rows of a share are built elsewhere and copied. build_shares() copies
-/// whole lists, which takes as long as the kernels if lists are long. Returns the number of entries.
+/// their rectangles, so each share's number of entries is known beforehand, and only its tail (see Share::tail_begin)
+/// is copied. build_shares() copies whole lists, which takes as long as the kernels if lists are long. Returns the
+/// number of entries.
 ///
-/// memory  the memory of the last rows, kept from call to call
+/// memory  the memory of the tails, kept from call to call
 /// build   build(i, rows) builds some rows of share i, a BinShare
 template <class Id, class Build>
 std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shares, Buffer<Buffer<Id>>& memory,
@@ -96,9 +96,7 @@ std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shar
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
         const Share& share = shares[i];
-        // Where in `list` the entries of this thread's last tile rows begin. They are built in separate memory, as the
-        // kernel would write past their end, where another thread's entries are.
-        const std::uint64_t tail = share.before + share.entries - share.tail_entries;
+        const std::uint64_t tail = share.before + share.entries - share.tail_entries;  // where the tail's entries begin
         build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
         Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);
         build(i, {share.tail_begin, share.end, copied, static_cast<std::uint32_t>(tail)});

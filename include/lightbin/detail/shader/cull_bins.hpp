@@ -2,8 +2,9 @@
 // The passes that z-bins add between project and count: a counting sort of the lights in view by the first bin that
 // each meets, stable, so that lights that begin in one bin keep their order. Ranks then take the place of ids.
 //
-// bin_counts and rank have a group for each segment of lights. The words `bin_counts` in `scratch` are first the
-// numbers of lights that begin in each bin, segment by segment, then the ranks from which each segment's go on.
+// bin_counts and rank have a group for each segment of lights. In the array at ShaderCull::bin_counts, bin_counts
+// stores how many lights of each segment begin in each bin. bin_offsets replaces them by prefix sums over the segments,
+// and appends those over the bins: a segment's first rank in a bin is the sum of both.
 #pragma once
 
 #include <lightbin/detail/shader/cull_common.hpp>
@@ -11,19 +12,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Adds `key_of` a light: the first bin in its lower 16 bits and the last in its upper ones; all bits if it is not
-/// in view. And `bin_batches`, the number of batches of 64 lights that each segment has.
-inline void add_key_of(ShaderWriter& writer, const CullShaderOptions& options) {
+/// Adds `bins_of`, which returns a light's first bin in the lower 16 bits and its last in the upper ones, or all bits
+/// set if it is not in view; and `bin_batches`, which returns the number of batches of 64 lights in each segment.
+inline void add_bins_of(ShaderWriter& writer, const CullShaderOptions& options) {
     const std::string words = std::to_string(cull_record_words(options)) + "u";
     writer.add(R"(
-uint $key_of(uint id) {
-    uint key = 0xffffffffu;
+uint $bins_of(uint id) {
+    uint ends = 0xffffffffu;
     if (id < $segments.x) {
         uint record = $places.x + id * )" + words + R"(;
         bool seen = ($scratch[record] & 0xffffu) <= ($scratch[record + 1u] & 0xffffu);
-        if (seen) { key = $scratch[record + 2u]; }
+        if (seen) { ends = $scratch[record + 2u]; }
     }
-    return key;
+    return ends;
 }
 
 uint $bin_batches() {
@@ -38,7 +39,7 @@ inline void add_bin_counts(ShaderWriter& writer, const CullShaderOptions& option
     declare_scratch(writer, options);
     writer.add("\n");
     writer.declare_shared("begun", cull_max_bins, true);
-    add_key_of(writer, options);
+    add_bins_of(writer, options);
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint bins = $grid.z;
@@ -46,8 +47,8 @@ void $run(uvec2 group, uint thread) {
     sync_group();
     uint batches = $bin_batches();
     for (uint batch = 0u; batch < batches; batch += 1u) {
-        uint key = $key_of((group.x * batches + batch) * 64u + thread);
-        if (key != 0xffffffffu) { atomicAdd(&$begun[key & 0xffffu], 1u); }
+        uint ends = $bins_of((group.x * batches + batch) * 64u + thread);
+        if (ends != 0xffffffffu) { atomicAdd(&$begun[ends & 0xffffu], 1u); }
     }
     sync_group();
     uint begin = $more.w + group.x * bins;
@@ -56,7 +57,7 @@ void $run(uvec2 group, uint thread) {
 )");
 }
 
-/// Adds the pass bin_offsets: one group finds where the ranks of each segment in each bin begin, and empties the bins.
+/// Adds the pass bin_offsets: one group finds the first rank of each segment in each bin, and empties the bins.
 inline void add_bin_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     writer.declare_storage("bins", "uvec2", "writeonly", options.bins, 8);
@@ -88,9 +89,9 @@ void $run(uvec2 group, uint thread) {
 )");
 }
 
-/// Adds the pass rank. Batch by batch, a light's rank is the next one of its bin, counted up by the lights before it in
-/// the batch that begin in the same bin. `beginning` has a bit for each light of the batch that begins in a bin: two
-/// words a bin, which are 0 between batches.
+/// Adds the pass rank. A light's rank is the next one of its first bin plus the number of lights before it in its batch
+/// of 64 that begin in the same bin. `beginning` has two words for each bin, with a bit for each light of the batch
+/// that begins in the bin; they are 0 between batches.
 inline void add_rank(ShaderWriter& writer, const CullShaderOptions& options) {
     const std::uint32_t words = cull_record_words(options);
     declare_scratch(writer, options);
@@ -98,7 +99,7 @@ inline void add_rank(ShaderWriter& writer, const CullShaderOptions& options) {
     writer.add("\n");
     writer.declare_shared("next_rank", cull_max_bins, false);
     writer.declare_shared("beginning", 2 * cull_max_bins, true);
-    add_key_of(writer, options);
+    add_bins_of(writer, options);
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint bins = $grid.z;
@@ -111,9 +112,9 @@ void $run(uvec2 group, uint thread) {
     uint batches = $bin_batches();
     for (uint batch = 0u; batch < batches; batch += 1u) {
         uint id = (group.x * batches + batch) * 64u + thread;
-        uint key = $key_of(id);
-        uint first = key & 0xffffu;
-        bool seen = key != 0xffffffffu;
+        uint ends = $bins_of(id);
+        uint first = ends & 0xffffu;
+        bool seen = ends != 0xffffffffu;
         if (seen) { atomicOr(&$beginning[2u * first + (thread >> 5u)], 1u << (thread & 31u)); }
         sync_group();
         uint before = 0u;
@@ -149,8 +150,8 @@ void $run(uvec2 group, uint thread) {
 }
 
 /// Adds the pass masks: marks the mask blocks of the lights by rank, and finds the range of ranks of each bin. A group
-/// has 64 ranks, which begin in ascending bins, so few bins meet them. Minimum and maximum don't depend on which group
-/// comes first, so nor do the bins.
+/// has 64 ranks, which begin in ascending bins, so few bins meet them. The ranges are made by atomic minima and maxima,
+/// so that they do not depend on the order in which groups run.
 inline void add_masks(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     writer.declare_storage("bins", writer.dialect.webgpu ? "atomic<uint>" : "uint", "", options.bins, 4);

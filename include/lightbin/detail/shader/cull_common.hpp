@@ -11,7 +11,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 // Numbers that the texts and the plan share.
 inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< mask blocks: bits of 64 lights fill 8 KB of shared memory
 inline constexpr std::uint32_t cull_max_bins = 1024;      ///< z-bins: three words each fill 12 KB of shared memory
-inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a light's first and last slice share a word
+inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a light's first and last slice, 16 bits each
 
 /// Returns the first error among the options, or nothing.
 inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
@@ -55,19 +55,20 @@ inline void declare_scratch(ShaderWriter& writer, const CullShaderOptions& optio
     writer.declare_storage("scratch", "uint", "", options.scratch, 4);
 }
 
-/// Adds `sum`, a sum that stays at the greatest number where 32 bits don't hold it.
+/// Adds `sum`, which adds two numbers and returns 2^32 - 1 if the sum overflows.
 inline void add_saturated_sum(ShaderWriter& writer) {
     writer.add("\nuint $sum(uint a, uint b) {\n    return a + min(b, ~a);\n}\n");
 }
 
-/// The number of layers of blocks, which are those of the slices of clusters.
+/// Returns the shader's expression for the number of layers of mask blocks: with clusters one for each 2^$blocks.w
+/// slices, else one.
 inline const char* cull_layers(const CullShaderOptions& options) {
     return options.slicing == Slicing::clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u";
 }
 
-/// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks`
-/// before, `mark` for each light in view, and `write_masks` after. A mask block has a bit for each light, and a
-/// word for each 32.
+/// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks` before,
+/// `mark` for each light in view, and `write_masks` after. A mask block is a block of tiles, see plan_blocks(), that
+/// has a bitmask of the lights in it, 32 to a word.
 inline void add_masks_of_group(ShaderWriter& writer, const CullShaderOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     writer.declare_shared("block_bits", 2 * cull_max_blocks, true);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The passes count, sums, offsets and fill: they make the lists of all cells from the lights' rectangles and masks.
 //
-// A group of 64 invocations has the cells of 8x8 tiles, one each. The lights of the mask block that these lie in are
-// staged in shared memory by ascending id, those of 1,024 at a time: an invocation reads the records of those in half a
-// word of the mask, and keeps which of the 8x8 tiles each covers. For each column and each row of tiles, a word has the
-// bits of those of 32 staged lights that cover it: a tile's lights are its column's word AND its row's. An invocation
-// takes them from the lowest bit on, so the lists ascend, and which invocation is faster makes no difference. The
-// lights are divided into segments, so that there are enough groups where there are few cells: the counts of a cell's
-// segments are added up to where each segment's part of the list begins.
+// A group of 64 invocations has the cells of 8x8 tiles, one each. It stages the lights of the mask block around these
+// tiles in shared memory, by ascending id, 32 words of the mask at a time: each invocation reads half a word, and notes
+// for each of its lights which columns and rows of the 8x8 tiles the light's rectangle covers. Then each column and
+// each row of tiles gets a word for each 32 staged lights, with a bit for each that covers it: a tile's lights are its
+// column's word AND its row's. An invocation visits these bits in ascending order, so lists ascend, whatever the order
+// in which invocations run. The lights are divided into segments, so that there are enough groups where there are few
+// cells. Prefix sums of the counts of a cell's segments say where each segment's part of the list begins.
 #pragma once
 
 #include <lightbin/detail/shader/cull_common.hpp>
@@ -32,15 +32,15 @@ float $finite(float depth, float other) {
     return result;
 }
 
-vec2 $depths_of(uint place) {
-    vec2 z = $z_bounds[place];
+vec2 $depths_of(uint cell) {
+    vec2 z = $z_bounds[cell];
     return vec2()") + (max_only ? "-1e30" : "$finite(z.x, -1e30)") + ", $finite(z.y, 1e30));\n}\n");
 }
 
-/// Adds `meets_half_space`, which tells whether a box has a point p with  n.p <= most:  whether its least n.p is one.
-/// The Binner compares with the cell in place of the box around it, which lists fewer lights, but never one more. Its n
-/// differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(), for which a part of the box's
-/// size makes up.
+/// Adds `meets_half_space`, which tells whether the box around a cell has a point p with  n.p <= most:  whether the
+/// least n.p of the box is at most `most`. The Binner tests the cell itself, so it lists no light that this test
+/// excludes. Its n differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(). So `least`
+/// subtracts 2^-14 of the box's greatest coordinate.
 inline void add_half_space(ShaderWriter& writer) {
     writer.add(R"(
 float $least(float n, vec2 ends) {
@@ -94,9 +94,10 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
 )" : "") + "    return met;\n}\n");
 }
 
-/// Adds `tiles_met` by the light whose record begins at `at`, among the 8x8 tiles from `corner` on: a bit for each
-/// column and, from bit 8 on, for each row of its rectangle; 0 where the slice is none of the light's. And for depth
-/// tests `meets`, which tells whether a cell between the depths z, in a tile of the rectangle, has the light.
+/// Adds `tiles_met`, which returns what the rectangle of the light whose record begins at `at` covers of the 8x8 tiles
+/// from `corner` on: a bit for each column and, from bit 8 on, for each row; 0 if the light does not meet the slice.
+/// For depth tests adds `meets`, which tells whether the light meets the cell between the depths z in a tile that it
+/// covers.
 inline void add_meets(ShaderWriter& writer, const CullShaderOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
     const std::string depths = options.slicing == Slicing::none ? "2u" : "3u";
@@ -125,23 +126,24 @@ uint $tiles_met(uint at, uvec2 corner, uint slice) {
                           "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n}\n"));
 }
 
-/// The place of a light's record in `scratch`; `id` is an expression of its id, with z-bins of its rank.
+/// Returns the shader's expression for where a light's record begins in `scratch`, from that for its id or, with
+/// z-bins, its rank.
 inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
     return (options.slicing == Slicing::z_bins ? "$places.y + " : "$places.x + ") + id + " * " +
            std::to_string(cull_record_words(options)) + "u";
 }
 
 inline void declare_stage(ShaderWriter& writer) {
-    writer.declare_shared("words", 32, false);         // of the mask
-    writer.declare_shared("lights_in", 8, false);      // how many lights each word has; a byte each
-    writer.declare_shared("staged", 1024, false);      // lights, and in the upper half the result of tiles_met
-    writer.declare_shared("column_bits", 256, false);  // of each 32 staged lights, those in each of 8 columns
-    writer.declare_shared("row_bits", 256, false);
+    writer.declare_shared("words", 32, false);         // the 32 words of the mask whose lights are staged
+    writer.declare_shared("lights_in", 8, false);      // how many lights each of these words has, a byte each
+    writer.declare_shared("staged", 1024, false);      // ids less the first one, and tiles_met() in the upper 16 bits
+    writer.declare_shared("column_bits", 256, false);  // bits of the lights in a column: 8 words for each 32 lights
+    writer.declare_shared("row_bits", 256, false);     // the same for rows
 }
 
-/// Adds `stage`: a group stages the lights of 32 words of a mask block, from word `first` on, and finds those
-/// of each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill; bits
-/// beyond the last light are 0. What is staged stays until the next call.
+/// Adds `stage`, with which a group stages the lights of 32 words of a mask block, from word `first` on, and finds
+/// those in each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill;
+/// bits beyond the last light are 0.
 inline void add_stage(ShaderWriter& writer, const CullShaderOptions& options) {
     writer.add(R"(
 uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
@@ -205,18 +207,19 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
 )");
 }
 
-/// The lines that find the cell's depths and box. `lit` is false where the cell has no depth at all.
+/// Returns the shader's lines that find the cell's depths and box. `drawn` is false if the cell is outside of the grid
+/// or its Z bounds are empty.
 inline std::string cull_cell(const CullShaderOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
-    if (options.depth_test == DepthTest::none) return "    bool lit = inside;\n";
+    if (options.depth_test == DepthTest::none) return "    bool drawn = inside;\n";
     std::string text = std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
-                       (clusters ? "slice" : "place") + "); }\n    bool lit = inside && z.x <= z.y;\n";
+                       (clusters ? "slice" : "cell") + "); }\n    bool drawn = inside && z.x <= z.y;\n";
     if (box)  // lights that are tested end before the depth 2^42
         text += std::string("    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, ") +
                 (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
     vec2 columns = vec2(0.0, 0.0);
     vec2 rows = vec2(0.0, 0.0);
-    if (lit) {
+    if (drawn) {
         uint sides = )" + (clusters ? "$grid.z" : "$grid.x * $grid.y") + R"(;
         columns = $across($z_bounds[sides + tile.x], z);
         rows = $across($z_bounds[sides + $grid.x + tile.y], z);
@@ -278,19 +281,19 @@ void $run(uvec2 group, uint thread) {
     uvec2 tile = corner + uvec2(thread & 7u, thread >> 3u);
     bool inside = segment < $segments.y && tile.x < $grid.x && tile.y < $grid.y;
     uint cells = $grid.x * $grid.y * )" + layer_count + R"(;
-    uint place = (slice * $grid.y + tile.y) * $grid.x + tile.x;
+    uint cell = (slice * $grid.y + tile.y) * $grid.x + tile.x;
     uint mask_block = ((slice >> $blocks.w) * $blocks.y + (corner.y >> $blocks.z)) * $blocks.x;
     mask_block += corner.x >> $blocks.z;
 )" + cull_cell(options));
     if (fill)
         writer.add(R"(    uint at = 0u;
     if (inside) {
-        uint range = $more.x + 2u * place;
+        uint range = $more.x + 2u * cell;
         uint count = $scratch[range + 1u];
-        uint base = $sum($scratch[range], $scratch[$more.y + (place >> 7u)]);
+        uint base = $sum($scratch[range], $scratch[$more.y + (cell >> 7u)]);
         uint begin = min(base, $grid.w);
-        if (segment == 0u) { $tiles[place] = uvec2(begin, min(count, $grid.w - begin)); }
-        at = $sum(base, $scratch[$places.w + segment * cells + place]);
+        if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }
+        at = $sum(base, $scratch[$places.w + segment * cells + cell]);
     }
 )");
     else
@@ -300,7 +303,7 @@ void $run(uvec2 group, uint thread) {
         uint staged_words = $stage(first, mask_block, corner, slice, thread);
         for (uint i = 0u; i < staged_words; i += 1u) {
             uint met = $column_bits[i * 8u + (thread & 7u)] & $row_bits[i * 8u + (thread >> 3u)];
-            if (!lit) { met = 0u; }
+            if (!drawn) { met = 0u; }
 )" + (fill || depths ? R"(            while (met != 0u) {
                 uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);
                 met &= met - 1u;
@@ -310,7 +313,7 @@ void $run(uvec2 group, uint thread) {
                      : "                count += 1u;\n") + "            }\n"
                              : std::string("            count += uint(bitCount(met));\n")) +
                "        }\n    }\n");
-    if (!fill) writer.add("    if (inside) { $scratch[$places.w + segment * cells + place] = count; }\n");
+    if (!fill) writer.add("    if (inside) { $scratch[$places.w + segment * cells + cell] = count; }\n");
     writer.add("}\n");
 }
 
@@ -342,22 +345,22 @@ inline void add_sums(ShaderWriter& writer, const CullShaderOptions& options) {
 void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
     uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
-    uint place = number * 128u + thread;
+    uint cell = number * 128u + thread;
     uint count = 0u;
-    if (place < cells) {
+    if (cell < cells) {
         for (uint i = 0u; i < $segments.y; i += 1u) {
-            uint at = $places.w + i * cells + place;
+            uint at = $places.w + i * cells + cell;
             uint own = $scratch[at];
             $scratch[at] = count;
             count += own;
         }
     }
     $scan(thread, count);
-    if (place < cells) {
+    if (cell < cells) {
         uint before = 0u;
         if (thread > 0u) { before = $partial[thread - 1u]; }
-        $scratch[$more.x + 2u * place] = before;
-        $scratch[$more.x + 2u * place + 1u] = count;
+        $scratch[$more.x + 2u * cell] = before;
+        $scratch[$more.x + 2u * cell + 1u] = count;
     }
     if (thread == 127u && number * 128u < cells) { $scratch[$more.y + number] = $partial[127]; }
 }

@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-inline constexpr std::uint32_t cull_group_row = 32768;  ///< work groups in x, where there are more than that
+inline constexpr std::uint32_t cull_group_row = 32768;  ///< the most work groups in x; more go on in y
 inline constexpr std::uint32_t cull_max_segments = 32;
 inline constexpr std::uint32_t cull_max_bin_segments = 64;
 
@@ -41,8 +41,8 @@ inline void plan_blocks(ShaderCull& to, bool clusters) {
     }
 }
 
-/// Sets an image axis. The margin, derived at `span` in cull_project.hpp, is the Binner's and what the GPU's arithmetic
-/// and the Binner's are apart. As in ImageAxis::margin the last term is for denormal numbers that are flushed to zero.
+/// Sets an image axis. The margin is the Binner's plus how far its results and the GPU's may differ, which add_span()
+/// derives. As in ImageAxis::margin the last term is for denormal numbers that are flushed to zero.
 inline void plan_axis(const ImageAxis& axis, float& scale, float& offset, float& margin, float& limit) {
     scale = static_cast<float>(axis.scale);
     offset = static_cast<float>(axis.offset);
@@ -137,7 +137,7 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     to.lights = room.lights;
     plan_blocks(to, clusters);
     plan_camera(camera_of(view), to);
-    // Slices are widened by what the GPU's arithmetic and the Binner's are apart, 5u, and by their own margin.
+    // Slices are widened by their own margin and by 5u, how far the GPU's results and the Binner's may differ.
     if (sliced) to.slice_margin = float_above(static_cast<double>(table_of(*slices).margin) + 0x1p-20);
     if (to_view != nullptr) {
         const WorldToView transform(*to_view);

@@ -4,8 +4,8 @@
 // The lists must hold the Binner's on every device that keeps the arithmetic that GLSL (section 4.7.1), SPIR-V for
 // Vulkan and WGSL (section 15.7) state: sums and products correctly rounded, but in which direction is open, so with
 // an error of up to 2u of the result, where u = 2^-24; quotients within 2.5 units in the last place, 5u; roots
-// computed as 1 / inversesqrt(x), 9u. Denormal numbers may be flushed to zero, and NaN and infinity may not exist:
-// so numbers are judged by their bits, and none is made.
+// computed as 1 / inversesqrt(x), 9u. Denormal numbers may be flushed to zero, and NaN and infinity may not be
+// supported: so they are recognised in the input by their bits, and are never computed.
 #pragma once
 
 #include <lightbin/detail/shader/cull_common.hpp>
@@ -13,9 +13,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Adds the function `state_of` a light: 0 for bad input, 1 for a light that counts as everywhere, as a number
-/// exceeds 2^40, else 2. The bits of a float without its sign ascend with it: those of 2^40 are 0x53800000, of
-/// infinity 0x7f800000.
+/// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
+/// one of its numbers exceeds 2^40, else 2. The bits of floats without a sign ascend with the floats: those of 2^40 are
+/// 0x53800000, of infinity 0x7f800000.
 inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
     const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
     const CullLayout& at = options.lights_at;
@@ -32,7 +32,7 @@ inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
 }
 
 /// Adds the function `sphere_at`, which returns a light's sphere in view space, signed so that tile indices grow with x
-/// and y, and z is the view depth. It holds the sphere that the Binner has. A radius is at least 2^-40, so that squares
+/// and y, and z is the view depth. It contains the Binner's sphere. The radius is made at least 2^-40, so that squares
 /// don't underflow.
 inline void add_sphere(ShaderWriter& writer, const CullShaderOptions& options) {
     const auto number = [&](std::uint32_t offset) {
@@ -171,8 +171,8 @@ uvec2 $span(vec4 axis, uint tiles, vec2 bounds) {
 )");
 }
 
-/// Adds `slices_of` a light's view depths: the first and the last slice that they meet. The depths are widened by what
-/// they may be off from the Binner's. Boundaries are numbers that ascend with the depths, see shader_slices().
+/// Adds `slices_of`, which returns the first and the last slice that an interval of view depths meets. It is widened by
+/// how far it may differ from the Binner's. Boundaries are integers that ascend with the depths, see shader_slices().
 inline void add_slices(ShaderWriter& writer) {
     writer.add(R"(
 uint $key_of(float depth) {
@@ -200,10 +200,10 @@ uvec2 $slices_of(vec2 z) {
 )");
 }
 
-/// The lines that store what the depth test compares, from word `word` of the record on: the light's view depths,
-/// moved outward by more than the Binner's and the GPU's are apart, or for boxes its sphere, behind which `project`
-/// has put a spot's half spaces. A radius of -1 stands for a light that boxes don't exclude: one that counts as
-/// everywhere, or a spot that is not sound.
+/// Returns the shader's lines that store what the depth test reads, from word `word` of the record on: the light's view
+/// depths, moved outward by more than the GPU's and the Binner's may differ, or for boxes its sphere, behind which
+/// `project` stores a spot's half spaces. A radius of -1 stands for a light that boxes don't exclude: one that counts
+/// as everywhere, or a spot that is not sound.
 inline std::string cull_depth_record(const CullShaderOptions& options, const std::string& word) {
     const auto put = [&](const char* index, const char* value) {
         return "    $scratch[record + " + word + " + " + index + "u] = floatBitsToUint(" + value + ");\n";

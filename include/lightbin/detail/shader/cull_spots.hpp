@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The part of the pass project that narrows a spot's rectangle from that of its ball to that of the sector that its
-// cone cuts out of it: project/spots.inl on the GPU, where it is derived. All error bounds are at least four times
-// those there: one part is the Binner's own error, whose sector must be held, and two the GPU's, whose operations may
-// be off by twice as much.
+// cone cuts out of it. It does what project/spots.inl does, which derives the formulas. All error bounds are at least
+// four times those there: once for the Binner's own error, as its rectangle must be contained, and twice for the GPU's,
+// whose operations may be off by twice as much.
 #pragma once
 
 #include <lightbin/detail/shader/cull_common.hpp>
@@ -41,7 +41,7 @@ struct $spot {
     bool sound;
 };
 
-// How far a spot reaches from its apex in a direction; the lengths of its unit axis along the direction and across it.
+// How far a spot reaches from its apex in a direction; its unit axis has the lengths along and across that direction.
 float $reach($spot s, float along, float across) {
     float part = clamp(s.cosine * along + s.sine * across, 0.0, 1.0);
     if (s.cosine <= along) { part = 1.0; }
@@ -98,8 +98,8 @@ $spot $spot_at(uint at, vec4 ball) {
 /// their own 30u, and n at most 270u. With the box's size in meets_half_space(), 2^-14 = 1024u of the spot's size is
 /// more than that and what the Binner adds. `tolerance` is four times the Binner's, which is for the apex.
 ///
-/// Both choose e and f by the sign of the axis' z. After a transform, that may not be the same where z is nearly 0:
-/// there the half spaces are others than the Binner's, and as good.
+/// Both choose e and f by the sign of the axis' z. After a transform the signs may differ where z is nearly 0: there
+/// the GPU has other half spaces than the Binner, which contain the spot as well.
 inline void add_half_spaces(ShaderWriter& writer) {
     writer.add(R"(
 void $store_half_spaces(uint at, $spot s) {
@@ -135,7 +135,7 @@ void $store_half_spaces(uint at, $spot s) {
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
 inline void add_narrowed(ShaderWriter& writer) {
     writer.add(R"(
-// Whether a plane that touches the ball touches it inside of the cone; true where rounding leaves that open.
+// Whether a plane through the eye touches the ball at a point inside the cone; true where rounding leaves that open.
 bool $touches_cap($spot s, float slope, float across) {
     float sure = across + (1.0 + abs(slope)) * 1.5258789e-5;
     return (s.cosine * abs(s.cosine) - 3.8146973e-6) * (1.0 + slope * slope) <= sure * abs(sure);
@@ -168,10 +168,10 @@ vec2 $narrowed($spot s, vec2 bounds, float c, float axis, float other) {
 
 /// Adds the functions of spots, up to `bounds_of_spot`, which returns the bounds along x and then along y.
 ///
-/// In perspective they are narrowed where the ball lies beyond the near plane and the spot is not much closer than
-/// it is large, twice as far as the Binner asks for. Where the ball certainly meets the near plane they are those
-/// that both the ball and the least sphere have, as the Binner's are. In between it is not known what the Binner
-/// does, and they are the ball's.
+/// In perspective they are narrowed where the ball lies beyond the near plane and the spot's size is less than 2^15
+/// times its least depth, half of what the Binner allows. Where the ball certainly meets the near plane they are the
+/// intersection of the ball's bounds and the least sphere's, as the Binner's are. In between it is not known which of
+/// these the Binner has, and they are the ball's.
 inline void add_spots(ShaderWriter& writer, const CullShaderOptions& options) {
     add_spot_at(writer, options);
     if (options.depth_test == DepthTest::box) add_half_spaces(writer);
