@@ -168,7 +168,7 @@ nice -n 19 $work/lists 1000 >$work/lists.log || failed="$failed $work/lists.log"
 
 echo "$me: every header alone, and the adversary"
 sh tests/guest/compile.sh g++ alone >$work/headers.log || failed="$failed $work/headers.log"
-g++ $common -O2 tests/hunt/main.cpp tests/hunt/scene.cpp tests/hunt/camera.cpp -o $work/hunt
+g++ $common -O2 tests/hunt/main.cpp -o $work/hunt
 nice -n 19 $work/hunt --seconds 300 --seed 1 >$work/hunt.log || failed="$failed $work/hunt.log"
 
 spots 14
