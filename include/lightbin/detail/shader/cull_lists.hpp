@@ -171,11 +171,11 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
     }
     // The product with 0x1010101 has the sum of the four bytes in its upper byte.
     uint lights = 0u;
-    for (uint i = 0u; i < 8u; i += 1u) {
-        uint counts = $lights_in[i];
+    for (uint quad = 0u; quad < 8u; quad += 1u) {
+        uint counts = $lights_in[quad];
         uint before = 0u;
-        if (i < (word >> 2u)) { before = counts; }
-        if (i == word >> 2u) { before = counts & ((1u << ((word & 3u) * 8u)) - 1u); }
+        if (quad < (word >> 2u)) { before = counts; }
+        if (quad == word >> 2u) { before = counts & ((1u << ((word & 3u) * 8u)) - 1u); }
         lights += (counts * 0x1010101u) >> 24u;
         at += (before * 0x1010101u) >> 24u;
     }
@@ -188,18 +188,18 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
     }
     sync_group();
     uint filled = (lights + 31u) >> 5u;
-    for (uint i = thread; i < filled * 8u; i += 64u) {
-        uint begin = (i >> 3u) * 32u;
+    for (uint slot = thread; slot < filled * 8u; slot += 64u) {
+        uint begin = (slot >> 3u) * 32u;
         uint end = min(begin + 32u, lights);
         uint in_column = 0u;
         uint in_row = 0u;
         for (uint next = begin; next < end; next += 1u) {
-            uint tiles = $staged[next] >> (16u + (i & 7u));
+            uint tiles = $staged[next] >> (16u + (slot & 7u));
             in_column |= (tiles & 1u) << (next & 31u);
             in_row |= ((tiles >> 8u) & 1u) << (next & 31u);
         }
-        $column_bits[i] = in_column;
-        $row_bits[i] = in_row;
+        $column_bits[slot] = in_column;
+        $row_bits[slot] = in_row;
     }
     sync_group();
     return filled;
