@@ -341,7 +341,8 @@ class Floats extends Held {
     }
     #allocate(length) {
         if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${String(length)} is no number of floats`);
-        return length > 0x3fffffff ? out_of_memory() : this[owner].c.malloc(Math.max(4 * length, 4));
+        const at = length > 0x3fffffff ? 0 : this[owner].c.malloc(Math.max(4 * length, 4));
+        return at !== 0 ? at : out_of_memory();
     }
     dispose() {
         this[owner].c.free(this[release]());

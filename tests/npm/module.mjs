@@ -318,7 +318,8 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
         await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
         await assert.rejects(lightbin.shader({language: 'wgsl', prefix: '1x'}), {code: 'not-a-prefix'});
         for (const [options, message] of [
-            [undefined, /^options must be an object of language/], [{}, /^options.language: 'null' is none of glsl-330/],
+            [undefined, /^options must be an object of language/],
+            [{}, /^options.language: 'null' is none of glsl-330/],
             [{tilesize: 8}, /there is no 'tilesize'/], [{tiles: {binding: 1}}, /there is no 'tiles'/],
             [{slots: {tile: {}}}, /^options.slots: there is no 'tile', but tiles, lists/],
             [{slots: {tiles: 3}}, /^options.tiles must be an object of binding, set/],
