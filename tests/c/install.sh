@@ -32,10 +32,8 @@ for shared in OFF ON; do
         cmake --build "$work/user_$shared"
     } >"$work/said" 2>&1 || { cat "$work/said"; exit 1; }
     "$work/user_$shared/user"
-    static=
-    [ $shared = ON ] || static=--static
     # shellcheck disable=SC2046  # a word a flag
-    cc -std=c99 "$here/left_out.c" -o "$work/program" $(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config $static --cflags --libs lightbin-c) \
+    cc -std=c99 "$here/left_out.c" -o "$work/program" $(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --cflags --libs lightbin-c) \
         -Wl,-rpath,"$prefix/lib"
     "$work/program"
     echo "shared: $shared"
