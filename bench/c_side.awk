@@ -22,7 +22,8 @@ function median_of(values,    sorted, count, i, k, value) {
 }
 
 END {
-    print "| options | lights | of | C++ us a build | C / C++ | least | greatest |\n| --- | --- | --- | --- | --- | --- | --- |"
+    print "| options | lights | of | C++ us a build | C / C++ | least | greatest |"
+    print "| --- | --- | --- | --- | --- | --- | --- |"
     for (line = 1; line <= lines; ++line) {
         key = keys[line]
         time = median_of(times[key])
@@ -32,5 +33,6 @@ END {
         if (ratio > 1.03) ++above
     }
     ratio = median_of(all)
-    printf "C over C++: %.3f to %.3f, median %.3f; %d of %d lines are above 1.03\n", least, greatest, ratio, above, lines
+    printf "C over C++: %.3f to %.3f, median %.3f; ", least, greatest, ratio
+    printf "%d of %d lines are above 1.03\n", above, lines
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Whole builds through lightbin.h over those of the C++ side, in turns in one run, on sets of lights in structs of the
-// caller's: what docs/c.md says of speed. `c_side [SECONDS]` takes so long for each case, .5 if not given, and writes a line
-// for it: options, lights, what they are, microseconds a build in C++, and the ratio. bench/c_side.awk makes the table.
+// caller's: what docs/c.md says of speed. `c_side [SECONDS]` takes so long for each case, .5 if not given, and writes a
+// line for it: options, lights, what they are, microseconds a build in C++, and the ratio. bench/c_side.awk makes the
+// table.
 //
-// Where arrays happen to lie in a page makes a build up to a twentieth faster or slower, with the same code. So each ratio
-// is the median of several placements: both sides start anew in each, with their memory at other addresses.
+// Where arrays happen to lie in a page makes a build up to a twentieth faster or slower, with the same code. So each
+// ratio is the median of several placements: both sides start anew in each, with their memory at other addresses.
 #include <lightbin/lightbin.h>
 
 #include <lightbin/box.hpp>
