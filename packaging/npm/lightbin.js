@@ -29,6 +29,10 @@ function only(given, known, what) {
     return given;
 }
 
+// The names of the members of each struct that a program may give.
+const names = Object.fromEntries(Object.entries(structs).map(([name, {members}]) =>
+    [name, Object.keys(members).filter(key => key !== 'size')]));
+
 const moved = 'what was read of the module\'s memory before that grew is empty: read it anew after each call';
 
 /// What a program holds of a module's memory. Its address is 0 in none that may be used.
@@ -57,6 +61,8 @@ const kinds = {
     spots: {stride: 8, attributes: {centre: [3, 0], radius: [1, 3], axis: [3, 4], cosine: [1, 7]}},
     boxes: {stride: 16, attributes: {centre: [3, 0], radius: [1, 3], boxCentre: [3, 4], halfAxes: [9, 7], taper: [1]}},
 };
+const light_names = ['viewMatrix', 'layout', ...Object.keys(kinds)];
+for (const kind of Object.values(kinds)) kind.names = ['count', 'array', 'stride', ...Object.keys(kind.attributes)];
 
 /// The module's functions and memory.
 class Core {
@@ -129,7 +135,7 @@ class Core {
 
     write(name, to, given, what) {
         const {members} = structs[name], heap = this.heap();
-        only(given, Object.keys(members).filter(key => key !== 'size'), what);
+        only(given, names[name], what);
         for (const key in given) {
             const value = given[key];
             if (value === undefined) continue;
@@ -212,7 +218,7 @@ class Core {
     matrix(numbers, layout, what) { return {doubles: this.doubles(numbers, 16, what), layout}; }
 
     lights(given, what = 'lights') {
-        const {viewMatrix, layout} = only(given, ['viewMatrix', 'layout', ...Object.keys(kinds)], what);
+        const {viewMatrix, layout} = only(given, light_names, what);
         const at = this.place('lights', viewMatrix == null ? {} : {viewMatrix: this.matrix(viewMatrix, layout,
             `${what}.viewMatrix`)});
         for (const kind in kinds)
@@ -222,8 +228,8 @@ class Core {
     }
 
     kind(kind, given, to, what) {
-        const {attributes, stride: usual} = kinds[kind], {members} = structs[kind];
-        only(given, ['count', 'array', 'stride', ...Object.keys(attributes)], what);
+        const {attributes, stride: usual, names: known} = kinds[kind], {members} = structs[kind];
+        only(given, known, what);
         const {array: shared, stride = usual} = given, heap = this.heap();
         if (!(Number.isInteger(stride) && stride > 0))
             refuse(`${what}.stride: ${String(stride)} is no number of floats`);
@@ -663,8 +669,8 @@ const cull = {make: c => c.lightbin_cull_shader, options: 'cullOptions',
 
 function shader_options(core, generator, options) {
     const {options: struct, bindings} = generator, c = core.c;
-    only(options, [...Object.keys(structs[struct].members).filter(key =>
-        key !== 'size' && key !== 'slotsGiven' && !Object.hasOwn(bindings, key)), 'slots'], 'options');
+    only(options, [...names[struct].filter(key => key !== 'slotsGiven' && !Object.hasOwn(bindings, key)), 'slots'],
+        'options');
     const {format, prefix, slots, ...others} = options, given = {...others, language: others.language ?? null};
     if (format !== undefined) given.format = core.place('format', format, 'options.format');
     if (prefix !== undefined) {
