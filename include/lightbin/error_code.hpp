@@ -89,16 +89,19 @@ inline constexpr const char* error_sentences[] = {
     "the projection matrix has a NaN or infinite entry",
     ("the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be a "
      "positive constant alone. Pass the projection alone, not projection times view (the view matrix goes with lights "
-     "that are in world space)"),
+     "that are in world space). If depth lies along another axis than z, as with z up in Panda3D, change the axes of "
+     "both matrices"),
     ("the matrix is a projection when it is transposed: give the layout that its numbers have in memory, row major or "
      "column major"),
     ("the perspective matrix does not have its eye at the origin of view space: pass the projection alone, not "
      "projection times view (the view matrix goes with lights that are in world space)"),
     ("the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic row "
      "reads z). Pass the projection alone, not projection times view, and not the view matrix; where the projection "
-     "itself turns the image, apply that to the pixels"),
-    ("the projection has an oblique near plane (its z row reads x or y): pass the projection without it; its tiles "
-     "are the same and its near plane misses no light"),
+     "itself turns the image, apply that to the pixels. If depth lies along another axis than z, as with z up in "
+     "Panda3D, change the axes of both matrices"),
+    ("the projection has an oblique near plane (its z row reads x or y): pass the projection without it, with a near "
+     "distance of almost 0 and no far plane (orthographic: with planes around all that is drawn). Its tiles are the "
+     "same, and it misses no light"),
     ("the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 or "
      "less? Check the matrix's z row and the option clip_depth"),
     "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller units",

@@ -7,7 +7,7 @@
 //   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix (of an XMMATRIX: XMStoreFloat4x4 first)
 //   OpenSceneGraph's Matrixf, Matrixd         row of v M            the matrix itself
 //   Irrlicht                                  row of v M            matrix(m.pointer(), MatrixLayout::row_vectors)
-//   Panda3D                                   row of v M            matrix(m.get_data(), MatrixLayout::row_vectors)
+//   Panda3D, with CS_yup_right                row of v M            matrix(m.get_data(), MatrixLayout::row_vectors)
 //   Qt's QMatrix4x4                           column of M v         matrix(m.constData(), MatrixLayout::column_major)
 //   OGRE, rows of one's own                   row of M v            matrix(&m[0][0], MatrixLayout::row_major)
 //

@@ -2,6 +2,11 @@
 // is missed is proved in tests/oracle.
 #include "scene.hpp"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -125,4 +130,92 @@ TEST_CASE("what became of the lights, and how long the lists are") {
     REQUIRE(none);
     CHECK(none->light_counts().lights == 0);
     CHECK(list_lengths(*none).histogram[0] == view.tile_count());
+}
+
+namespace {
+
+/// The projection with `plane` as its near plane: E. Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005.
+glm::dmat4 with_near_plane(glm::dmat4 projection, const glm::dvec4& plane) {
+    const glm::dmat4 transposed = glm::transpose(projection);
+    const glm::dvec4 corner =
+        glm::inverse(projection) * glm::dvec4(glm::sign(plane.x), glm::sign(plane.y), 1, 1);
+    const double scale = 2 * glm::dot(transposed[3], corner) / glm::dot(plane, corner);
+    for (int i = 0; i < 4; ++i)
+        projection[i][2] = plane[i] * scale - transposed[3][i];
+    return projection;
+}
+
+/// The same image without an oblique plane, as docs/matrices.md advises.
+glm::dmat4 without_near_plane(glm::dmat4 projection) {
+    const double w = projection[2][3];
+    projection[0][2] = projection[1][2] = 0;
+    projection[2][2] = w == 0 ? -1e-3 : w;
+    projection[3][2] = w == 0 ? 0 : -1e-6;
+    return projection;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an oblique near plane: the view that the error advises misses no light, that of the old planes many") {
+    const glm::dmat4 square = glm::perspective(std::acos(0.0), 1.0, 1.0, 10.0);
+    const glm::dvec4 mirror(0, 0.6, -0.8, -0.25);
+    const std::vector<Sphere> three = {{0, 0, -0.6f, 0.1f}, {0, 0, -20, 1}, {0, -3, -40, 2}};
+    std::size_t drawn = 0, missed = 0, missed_by_original = 0;
+    const auto check = [&](const glm::dmat4& projection, const glm::dvec4& plane,
+                           const std::vector<Sphere>& lights, std::uint32_t seed) {
+        const glm::dmat4 oblique = with_near_plane(projection, plane);
+        CHECK(View::from_projection(oblique, {256, 256}).error().code == ErrorCode::oblique_depth);
+        const View advised = *View::from_projection(without_near_plane(oblique), {256, 256}),
+                   original = *View::from_projection(projection, {256, 256});
+        Binner<> one, other;
+        const auto grid = one.bin(advised, lights), grid_of_original = other.bin(original, lights);
+        REQUIRE(grid);
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        std::uniform_real_distribution<double> part(0, 1);
+        for (std::uint32_t id = 0; id < lights.size(); ++id)
+            for (int i = 0; i < 50; ++i) {  // the centre, and points inside of the sphere
+                const glm::dvec3 centre(lights[id].x, lights[id].y, lights[id].z),
+                    aside = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+                const glm::dvec3 point = centre + aside * (i == 0 ? 0 : part(random) * lights[id].radius);
+                const glm::dvec4 clip = oblique * glm::dvec4(point, 1);
+                if (!(clip.w > 0 && glm::all(glm::lessThan(glm::abs(glm::dvec3(clip)), glm::dvec3(clip.w)))))
+                    continue;
+                const int x = static_cast<int>((clip.x / clip.w + 1) * 4),
+                          y = static_cast<int>((clip.y / clip.w + 1) * 4);
+                const auto lacks = [&](const auto ids) {
+                    return !std::binary_search(ids.begin(), ids.end(), id);
+                };
+                ++drawn;
+                missed += lacks(grid->lights_in(x, y));
+                missed_by_original += lacks(grid_of_original->lights_in(x, y));
+            }
+    };
+    check(square, mirror, three, 1);
+    CHECK(drawn > 120);
+    CHECK(missed == 0);
+    CHECK(missed_by_original == drawn);
+
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1), distance(0.05, 3), depth(0.5, 30);
+    const glm::dmat4 others[] = {square, glm::frustum(-0.5, 1.5, -1.0, 0.7, 1.0, 10.0),
+                                 glm::frustumLH_NO(-1.0, 1.0, -0.3, 0.9, 0.5, 20.0),
+                                 glm::ortho(-6.0, 6.0, -5.0, 7.0, 1.0, 10.0)};
+    for (std::uint32_t i = 0; i < 80; ++i) {
+        const glm::dmat4& projection = others[i % 4];
+        const double forward = projection[2][3] > 0 ? 1 : -1;
+        const glm::dvec3 normal(unit(random), unit(random), forward * (0.1 + distance(random)));
+        std::vector<Sphere> lights;
+        for (int light = 0; light < 40; ++light) {
+            const double far_off = depth(random);
+            lights.push_back(
+                {static_cast<float>(unit(random) * far_off), static_cast<float>(unit(random) * far_off),
+                 static_cast<float>(forward * far_off), static_cast<float>(distance(random) / 2)});
+        }
+        check(projection, glm::dvec4(normal, -distance(random)), lights, i);
+    }
+    CHECK(drawn > 40000);
+    CHECK(missed == 0);
+    CHECK(missed_by_original > drawn / 10);
 }

@@ -137,6 +137,24 @@ TEST_CASE("a transposed matrix is refused as that, where it can be told") {
     CHECK(refusal(view) == ErrorCode::image_axes_rotated);
 }
 
+// As Panda3D's lenses make them, which have z up in view space: x right, depth along y.
+TEST_CASE("a projection of other axes is refused by a text that says so, and accepted once they are changed") {
+    const glm::mat4 to_z_up = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}},
+                    perspective = {{1.5f, 0, 0, 0}, {0, 0, 1001 / 999.0f, 1}, {0, 2, 0, 0}, {0, 0, -2000 / 999.0f, 0}},
+                    flat = {{0.1f, 0, 0, 0}, {0, 0, 2 / 999.0f, 0}, {0, 0.2f, 0, 0}, {0, 0, -1001 / 999.0f, 1}};
+    for (const auto& [matrix, code] : {std::pair(perspective, ErrorCode::not_a_projection),
+                                       std::pair(flat, ErrorCode::image_axes_rotated)}) {
+        CHECK(refusal(matrix) == code);
+        const std::string text = View::from_projection(matrix, full_hd).error().message();
+        CHECK(text.ends_with("change the axes of both matrices"));
+        const auto summary = View::from_projection(matrix * to_z_up, full_hd)->summary();
+        CHECK(summary.near_depth == doctest::Approx(1).epsilon(1e-4));
+        CHECK(summary.far_depth == doctest::Approx(1000).epsilon(1e-4));
+        CHECK(summary.looks_down_negative_z);
+        CHECK(!summary.y_flipped);
+    }
+}
+
 TEST_CASE("a view says what it read, and what is seldom meant") {
     const auto summary = [](const glm::mat4& matrix, lightbin::Extent viewport = full_hd, ViewOptions options = {}) {
         const auto view = View::from_projection(matrix, viewport, options);
