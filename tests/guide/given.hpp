@@ -8,6 +8,8 @@
 #include <lightbin/shader_cull.hpp>
 
 #include <epoxy/gl.h>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/glm.hpp>
 
 #include <cstddef>
@@ -64,6 +66,7 @@ struct Eye {
 extern const Eye eyes[2];
 extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> left_grid, right_grid;
 lightbin::Sphere to_sphere(const Lamp& lamp);
+lightbin::Box to_box(const Decal& decal);
 extern const Lamp lamp;
 extern const std::vector<float> depth_buffer;
 extern const float white, distance, range;
