@@ -52,9 +52,12 @@ run_page() {
     "$work/program"
 }
 
-# The page's program.
-blocks c >"$work/page.c"
-run_page "$work/page.c" | grep -q '^20 x 20 tiles, [1-9]'
+# The page's program, which also calls the page's function that makes clusters.
+blocks c | sed -e 's/^static void succeed/void bin_clusters(const lightbin_view*, const lightbin_lights*);\n&/' \
+    -e 's/^    lightbin_view_destroy(view);$/    bin_clusters(view, \&lights);\n&/' >"$work/page.c"
+run_page "$work/page.c" >"$work/said"
+grep -q '^20 x 20 tiles, [1-9]' "$work/said"
+grep -qx '20 x 20 x 24 clusters' "$work/said"
 
 # The passes of docs/gpu.md are compiled and dispatched in their order.
 cat >"$work/gpu.c" <<END
