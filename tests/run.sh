@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs the tests: `sh tests/run.sh [--quick]` on Debian 12, as root or with sudo. Installs the packages that are missing,
 # configures and builds in build/dev, runs the tests, and says how far it is.
-#   (nothing)  every test: ten to fifteen minutes on two cores
+#   (nothing)  all tests but those that have a command of their own, see docs/tour.md
 #   --quick    the most telling ones, and builds only those
 set -eu
 me=tests/run.sh

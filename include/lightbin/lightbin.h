@@ -777,9 +777,10 @@ typedef struct lightbin_encoded {
 LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* format, uint64_t tiles,
                                                     uint64_t entries, uint64_t* bytes);
 
-/* Writes the lists of a grid in another format, in this machine's byte order. Every list is complete, except that the
- * sentinel format cuts lists that are longer than its capacity and counts what it cut. Errors: a format without its
- * capacity or max_lights; an id that is too large for the format; memory that is too small. */
+/* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
+ * grid->ranges still index. Every list is complete, except that the sentinel format cuts lists that are longer than its
+ * capacity and counts what it cut. Errors: a format without its capacity or max_lights; an id that is too large for the
+ * format; memory that is too small. */
 LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format,
                                              void* out, uint64_t out_bytes, lightbin_encoded* encoded);
 
@@ -1019,10 +1020,11 @@ typedef struct lightbin_cull_options {
  * in `grid_block`. On success *shader is to be freed with lightbin_shader_destroy().
  *
  * After all passes, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids, and with z-bins
- * `order` and `bins`: the shader text of lightbin_shader_snippet() reads them. No light that the binner lists is
- * missing in a list, and ids ascend in each; few lists have more, see docs/gpu.md. The same input gives the same bytes
- * on every run. If the lists have more entries than there is room for, the list of the first tile that does not fit
- * is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
+ * `order` and `bins`: the shader text of lightbin_shader_snippet() reads them. No light that reaches a cell is
+ * missing in its list, and ids ascend in each. Lists also have lights that do not reach the cell, a few others than the
+ * binner's: see docs/gpu.md. The same input gives the same bytes on every run. If the lists have more entries than
+ * there is room for, the list of the first tile that does not fit is cut, and the lists after it are empty;
+ * lightbin_cull_totals has the number that was needed.
  *
  * Errors name the option that the language or the device does not allow. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,

@@ -17,8 +17,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 ///
 /// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(), and with z-bins in
 /// ranks(): the shader text of shader_snippet() reads them. No light that reaches a cell is missing in its list, on
-/// the conditions of docs/limits.md, and ids ascend. The lists have what the Binner lists, and few have more;
-/// docs/gpu.md names the exceptions. The same input gives the same bytes on every run.
+/// the conditions of docs/limits.md, and ids ascend. Lists also have lights that do not reach the cell, a few others
+/// than the Binner's: see docs/gpu.md. The same input gives the same bytes on every run.
 ///
 /// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
 /// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is

@@ -11,7 +11,8 @@ export function hasSimd(): boolean;
 
 type Wasm = WebAssembly.Module | BufferSource | Response | URL | string;
 export interface LoadOptions {
-    /** Whether to load the module with 128-bit vectors, which takes a third to nine tenths of the time. Default: hasSimd(). */
+    /** Whether to load the module with 128-bit vectors. The scalar one takes 1.2 to 3.3 times the time. Default:
+     * hasSimd(). */
     simd?: boolean;
     /** The module lightbin_simd.wasm or lightbin.wasm, or where it is. Default: beside the package's JavaScript. */
     wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
@@ -203,8 +204,8 @@ export interface Grid extends Counts {
     readonly idBytes: number;
     /** Ids below firstSpot are spheres, from there to firstBox spots, others boxes. */
     readonly firstSpot: number, firstBox: number;
-    /** Writes the lists in another format. The data hold until the next encode(), append() or splitKinds() of the
-     * binner. */
+    /** Writes the lists in another format; with 'offset-count' the ids alone, which `ranges` still index. The data hold
+     * until the next encode(), append() or splitKinds() of the binner. */
     encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
     /**
      * Writes the lists of several views, this grid's first, one view after another, for shaders made with
