@@ -16,7 +16,8 @@ export interface LoadOptions {
     simd?: boolean;
     /** The module lightbin_simd.wasm or lightbin.wasm, or where it is. Default: beside the package's JavaScript. */
     wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
-    /** The module shaders.wasm, which the first call that makes shader text loads, or where it is. */
+    /** The module shaders.wasm, which the first call that makes shader text loads, or where it is. If it can't be
+     * loaded, the next call tries again. */
     shaders?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
     /** The module advice.wasm, which each call of advise(), adviseSlices() and viewText() loads, or where it is. */
     advice?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
@@ -34,7 +35,7 @@ export interface ViewOptions {
     /** Sixteen numbers that map view space to clip space: any perspective or orthographic projection. */
     projection: Numbers;
     layout?: MatrixLayout;
-    /** Of the viewport, in pixels: 0 to 32768. */
+    /** Of the viewport, in pixels: 0 to 32768. A view of 0 pixels has no tiles. */
     width: number;
     height: number;
     /** The side of a square tile in pixels. Default: 32. */
@@ -105,9 +106,10 @@ type FloatArray = Floats | Numbers;
 type Attribute = FloatArray | number;
 
 interface Kind {
-    /** Default: as many as the array holds. */
+    /** Default: as many as the arrays hold, which then all have to end with the last light's floats. */
     count?: number;
-    /** An array that attributes share: `stride` floats a light. A `Floats` is read in place, others are copied. */
+    /** An array that attributes share: `stride` floats a light. A `Floats` is read in place, and so is a Float32Array
+     * over its memory; others are copied. */
     array?: FloatArray;
     stride?: number;
 }
@@ -205,7 +207,7 @@ export interface Grid extends Counts {
     /** Ids below firstSpot are spheres, from there to firstBox spots, others boxes. */
     readonly firstSpot: number, firstBox: number;
     /** Writes the lists in another format; with 'offset-count' the ids alone, which `ranges` still index. The data hold
-     * until the next encode(), append() or splitKinds() of the binner. */
+     * until the next encode(), append() or splitKinds() of the binner, or until the module's memory grows. */
     encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
     /**
      * Writes the lists of several views, this grid's first, one view after another, for shaders made with

@@ -18,12 +18,35 @@ const out_of_memory = () => refuse('there is not enough memory', 'out-of-memory'
 // The address of an object in the module's memory, what ends it, and the Core whose memory that is.
 const address = Symbol('address'), release = Symbol('release'), owner = Symbol('owner');
 
-const whole = (number, what) => Number.isInteger(number) && number >= -0x80000000 && number <= 0xffffffff ? number
-    : refuse(`${what}: ${String(number)} is no whole number of 32 bits`);
+/// Returns the number of bytes that are to be taken of the module's memory, which has less than 2^31.
+const checked_size = bytes => bytes <= 0x7fffffff ? bytes : out_of_memory();
 
-/// Refuses an object that has another property than `known`, or is none.
+const shown = value => Object(value) === value ? 'an object' : String(value);
+
+const real = (number, what) => typeof number === 'number' ? number : refuse(`${what}: ${shown(number)} is no number`);
+
+const reals = given => Object.entries(given).map(([what, number]) => real(number, what));
+
+/// type  int32_t, or another for numbers without a sign
+const whole = (number, what, type = 'int32_t') => {
+    const [least, greatest] = type === 'int32_t' ? [-0x80000000, 0x7fffffff] : [0, 0xffffffff];
+    return Number.isInteger(number) && number >= least && number <= greatest ? number
+        : refuse(`${what}: ${shown(number)} is no whole number ${least < 0 ? 'of 32 bits' : `from 0 to ${greatest}`}`);
+};
+
+const is_array = array => typeof array === 'object' && Number.isInteger(array?.length) && array.length >= 0;
+
+/// Refuses an array whose first `count` elements are not all numbers. Of typed arrays one tells.
+function all_numbers(array, count, what) {
+    const checked = Floats.made(array) ? 0 : ArrayBuffer.isView(array) ? Math.min(count, 1) : count;
+    for (let i = 0; i < checked; ++i)
+        if (typeof array[i] !== 'number') refuse(`${what}: element ${i} is no number`);
+}
+
+/// Refuses what is no object, which an array is not, and an object that has another property than `known`.
 function only(given, known, what) {
-    if (typeof given !== 'object' || given === null) refuse(`${what} must be an object of ${known.join(', ')}`);
+    if (typeof given !== 'object' || given === null || is_array(given))
+        refuse(`${what} must be an object of ${known.join(', ')}`);
     for (const key in given)
         if (!known.includes(key)) refuse(`${what}: there is no '${key}', but ${known.join(', ')}`);
     return given;
@@ -43,6 +66,8 @@ class Held {
         this[owner] = core;
         this.#name = name;
     }
+    /// Whether an object is one of this class, and no Proxy of one, which has no private members.
+    static made(object) { return object instanceof this && #at in object; }
     get [address]() {
         return this.#at !== 0 ? this.#at : refuse(`${this.#name}: it was disposed of`, 'null-argument');
     }
@@ -70,13 +95,13 @@ class Core {
         this.c = exports;
         this.heap();
         this.staging = new Block(this);
-        this.staged = [];  // arrays of JavaScript that the call reads, and where their address is to be written
+        this.staged = new Map();  // arrays that the call reads, and where addresses in them are to be written
     }
 
     /// Calls body() and gives back what it took from the module's stack, also after an error.
     scope(body) {
         const top = this.c.stackSave();
-        this.staged.length = 0;
+        this.staged.clear();
         try {
             return body(this.c);
         } finally {
@@ -124,9 +149,10 @@ class Core {
         return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
     }
 
-    /// Takes memory for a struct from the stack, and writes an object's properties to the members of their names.
-    place(name, given, what) {
-        const {bytes, members} = structs[name], at = this.c.stackAlloc(bytes), heap = this.heap();
+    /// Takes memory for a struct from the stack, unless it is given some, and writes an object's properties to the
+    /// members of their names.
+    place(name, given, what, at = this.c.stackAlloc(structs[name].bytes)) {
+        const {bytes, members} = structs[name], heap = this.heap();
         this.bytes.fill(0, at, at + bytes);
         if (members.size !== undefined) heap.setUint32(at, bytes, true);
         if (given !== undefined) this.write(name, at, given, what);
@@ -142,16 +168,14 @@ class Core {
             const [kind, offset, more] = members[key], at = to + offset;
             if (kind === 'struct') {
                 this.write(more, at, value, `${what}.${key}`);
-            } else if (kind === 'pointer' && typeof value === 'object') {
-                this.stage(value, at, 0);
             } else if (kind === 'double') {
-                heap.setFloat64(at, value, true);
+                heap.setFloat64(at, real(value, `${what}.${key}`), true);
             } else if (more !== undefined) {
-                if (!Object.hasOwn(enums[more], value))
-                    refuse(`${what}.${key}: '${value}' is none of ${Object.keys(enums[more]).join(', ')}`);
+                if (typeof value !== 'string' || !Object.hasOwn(enums[more], value))
+                    refuse(`${what}.${key}: '${shown(value)}' is none of ${Object.keys(enums[more]).join(', ')}`);
                 heap.setInt32(at, enums[more][value], true);
             } else {
-                heap.setInt32(at, whole(typeof value === 'boolean' ? +value : value, `${what}.${key}`), true);
+                heap.setInt32(at, whole(typeof value === 'boolean' ? +value : value, `${what}.${key}`, kind), true);
             }
         }
     }
@@ -170,45 +194,56 @@ class Core {
         return values;
     }
 
-    /// Writes the address of an array's element at `offset` to `to`: now, or in flush() if the array has to be copied.
-    stage(array, to, offset) {
-        if (array instanceof Floats && array[owner] !== this)
-            this.stage(array.array, to, offset);
-        else if (array instanceof Floats)
-            this.heap().setUint32(to, array[address] + 4 * offset, true);
-        else if (array.buffer === this.c.memory.buffer)
+    /// Writes the address of an array's float at `offset` to `to`: now if it is in the module's memory, else in
+    /// flush(), which copies the first `end` floats.
+    stage(array, what, to, offset, end) {
+        if (Floats.made(array)) {
+            if (array[owner] !== this) this.stage(array.array, what, to, offset, end);
+            else this.heap().setUint32(to, array[address] + 4 * offset, true);
+        } else if (array instanceof Float32Array && array.buffer === this.c.memory.buffer) {
             this.heap().setUint32(to, array.byteOffset + 4 * offset, true);
-        else
-            this.staged.push([array, to, offset]);
+        } else {
+            const use = this.staged.get(array) ?? {what, places: [], end: 0};
+            use.places.push([to, offset]);
+            use.end = Math.max(use.end, end);
+            this.staged.set(array, use);
+        }
     }
 
     /// Copies the arrays of the call that are not in the module's memory.
     flush() {
-        if (this.staged.length === 0) return;
-        const places = new Map();
-        let end = 0;
-        for (const [array] of this.staged)
-            if (!places.has(array)) {
-                places.set(array, end);
-                end += array.length;
-            }
-        const begin = this.staging.reserve(4 * end);
-        const floats = new Float32Array(this.c.memory.buffer, begin, end);
-        for (const [array, at] of places) {
-            try {
-                floats.set(array, at);
-            } catch (error) {
-                refuse(`an array can't be copied (${error.message}); ${moved}`);
-            }
+        if (this.staged.size === 0) return;
+        let length = 0;
+        for (const {end} of this.staged.values()) length += end;
+        checked_size(4 * length);
+        for (const [array, use] of this.staged) use.part = this.part(array, use.end, use.what);
+        const begin = this.staging.reserve(4 * length);
+        const floats = new Float32Array(this.c.memory.buffer, begin, length), heap = this.heap();
+        let at = 0;
+        for (const {part, places, end} of this.staged.values()) {
+            if (end > 0 && ArrayBuffer.isView(part)) floats.set(part, at);
+            else for (let i = 0; i < end; ++i) floats[at + i] = part[i];
+            for (const [to, offset] of places) heap.setUint32(to, begin + 4 * (at + offset), true);
+            at += end;
         }
-        const heap = this.heap();
-        for (const [array, to, offset] of this.staged) heap.setUint32(to, begin + 4 * (places.get(array) + offset),
-            true);
+    }
+
+    /// The first `end` elements of an array, to be copied: where it is no typed array it is returned whole.
+    part(array, end, what) {
+        all_numbers(array, end, what);
+        if (!ArrayBuffer.isView(array)) return array;
+        try {
+            const part = array.subarray(0, end);
+            return array.buffer === this.c.memory.buffer ? Float32Array.from(part) : part;  // which growth would empty
+        } catch (error) {
+            refuse(`${what}: the array can't be copied (${error.message}); ${moved}`);
+        }
     }
 
     /// Copies numbers to the stack as doubles, which JavaScript's numbers are.
     doubles(numbers, count, what) {
-        if (!(numbers?.length >= count)) refuse(`${what} must be an array of ${count} numbers`);
+        if (!(is_array(numbers) && numbers.length >= count)) refuse(`${what} must be an array of ${count} numbers`);
+        all_numbers(numbers, count, what);
         const at = this.c.stackAlloc(8 * count), heap = this.heap();
         for (let i = 0; i < count; ++i) heap.setFloat64(at + 8 * i, numbers[i], true);
         return at;
@@ -232,41 +267,46 @@ class Core {
         only(given, known, what);
         const {array: shared, stride = usual} = given, heap = this.heap();
         if (!(Number.isInteger(stride) && stride > 0))
-            refuse(`${what}.stride: ${String(stride)} is no number of floats`);
-        if (shared !== undefined && !(shared?.length >= 0)) refuse(`${what}.array must be an array of floats`);
+            refuse(`${what}.stride: ${shown(stride)} is no number of floats`);
+        if (shared !== undefined && !is_array(shared)) refuse(`${what}.array must be an array of floats`);
         const {count = this.countOf(kind, given, stride)} = given;
-        if (!(Number.isInteger(count) && count >= 0)) refuse(`${what}.count: ${String(count)} is no number of lights`);
-        heap.setUint32(to, count, true);
+        heap.setUint32(to, whole(count, `${what}.count`, 'size_t'), true);
         for (const key in attributes) {
             const [floats, usual_offset] = attributes[key];
             const value = given[key] === undefined && shared !== undefined ? usual_offset : given[key];
             if (value == null) continue;
             const by_offset = typeof value === 'number', from = by_offset ? shared : value;
             const offset = by_offset ? value : 0, step = by_offset ? stride : floats;
-            if (!(Number.isInteger(offset) && offset >= 0 && from?.length >= 0))
+            if (!(Number.isInteger(offset) && offset >= 0 && is_array(from)))
                 refuse(`${what}.${key} must be an array of floats, or the place of the floats in each light `
                     + `of ${what}.array`);
             if (by_offset && offset + floats > stride)
                 refuse(`${what}.${key}: a light has ${stride} floats, and these end at ${offset + floats}`,
                     'stride-too-small');
-            if (count > 0 && (count - 1) * step + offset + floats > from.length)
+            const end = count > 0 ? (count - 1) * step + offset + floats : 0, at = to + members[key][1];
+            if (end > from.length)
                 refuse(`${what}.${key}: the array has ${from.length} floats, and ${count} lights have more`
                     + (from.length === 0 ? `; ${moved}` : ''), 'buffer-too-small');
-            const at = to + members[key][1];
-            this.stage(from, at, offset);
+            const name = `${what}.${by_offset ? 'array' : key}`;
+            if (given.count === undefined && from.length !== count * step) {
+                all_numbers(from, from.length, name);
+                refuse(`${name}: the array has ${from.length} floats, and ${count} lights have ${count * step}; if `
+                    + 'there are so many lights, give count');
+            }
+            this.stage(from, name, at, offset, end);
             heap.setUint32(at + 4, 4 * step, true);
         }
     }
 
-    countOf(kind, given, stride) {
-        if (given.array !== undefined) return Math.floor(given.array.length / stride);
+    countOf(kind, {array, ...given}, stride) {
         const [key, [floats]] = Object.entries(kinds[kind].attributes).find(([key]) => given[key] != null) ?? ['', [1]];
-        return Math.floor((given[key]?.length ?? 0) / floats);
+        const [of, step] = array !== undefined ? [array, stride] : [given[key], floats];
+        return is_array(of) ? Math.floor(of.length / step) : 0;
     }
 
     /// The address of a view or of slices; 0, which the library refuses, for null.
     addressOf(object, Type, what) {
-        if (object != null && !(object instanceof Type && object[owner] === this))
+        if (object != null && !(Type.made(object) && object[owner] === this))
             refuse(`${what} was not made by this module`);
         return object?.[address] ?? 0;
     }
@@ -280,9 +320,15 @@ class Core {
     }
 
     bounds(given, what) {
-        only(given, ['min', 'max', 'backgroundSkipped'], what);
-        const lengths = [given.min, given.max].filter(bound => bound != null).map(bound => bound.length);
-        return this.place('zBounds', {tiles: lengths.length > 0 ? Math.min(...lengths) : 0, ...given}, what);
+        const {backgroundSkipped, ...all} = only(given, ['min', 'max', 'backgroundSkipped'], what);
+        const bounds = Object.entries(all).filter(([, array]) => array != null);
+        for (const [key, array] of bounds)
+            if (!is_array(array)) refuse(`${what}.${key} must be an array of floats`);
+        const tiles = bounds.length > 0 ? Math.min(...bounds.map(([, array]) => array.length)) : 0;
+        const at = this.place('zBounds', {tiles, backgroundSkipped}, what);
+        for (const [key, array] of bounds)
+            this.stage(array, `${what}.${key}`, at + structs.zBounds.members[key][1], 0, tiles);
+        return at;
     }
 
     /// Lets `called` write items of `words` words each, at most `count`, to a block, and returns them as an array.
@@ -313,10 +359,9 @@ class Block {
         this.at = this.bytes = 0;
     }
     reserve(bytes) {
-        if (bytes <= this.bytes) return this.at;
+        if (checked_size(bytes) <= this.bytes) return this.at;
         this.free();
         this.at = this.core.c.malloc(bytes);
-        if (this.at === 0) out_of_memory();
         this.bytes = bytes;
         return this.at;
     }
@@ -330,9 +375,7 @@ class Floats extends Held {
     #array;
     constructor(core, length) {
         super(core, 'floats');
-        this.length = 0;
-        this[address] = this.#allocate(length);
-        this.length = length;
+        this.#take(length, this.#allocate(length));
         this.array.fill(0);
     }
     get array() { return this.#array = this[owner].array(Float32Array, this[address], this.length, this.#array); }
@@ -342,17 +385,20 @@ class Floats extends Held {
         array.set(this.array.subarray(0, length));
         array.fill(0, this.length);
         this[owner].c.free(before);
-        this[address] = at;
-        this.length = length;
+        this.#take(length, at);
     }
     #allocate(length) {
-        if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${String(length)} is no number of floats`);
-        const at = length > 0x3fffffff ? 0 : this[owner].c.malloc(Math.max(4 * length, 4));
-        return at !== 0 ? at : out_of_memory();
+        if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${shown(length)} is no number of floats`);
+        return this[owner].c.malloc(checked_size(Math.max(4 * length, 4)));
+    }
+    /// Nobody else sets the length, by which `array` would exceed its memory.
+    #take(length, at) {
+        Object.defineProperty(this, 'length', {value: length, configurable: true, enumerable: true});
+        this[address] = at;
     }
     dispose() {
         this[owner].c.free(this[release]());
-        this.length = 0;
+        this.#take(0, 0);
     }
 }
 
@@ -366,7 +412,7 @@ class View extends Held {
     }
     /// The same view in another module.
     static copy(core, view) {
-        if (!(view instanceof View)) refuse('view must be one of this package');
+        if (!View.made(view)) refuse('view must be one of this package');
         return view[address] && new View(core, view.#options);
     }
     update(options) {
@@ -374,7 +420,10 @@ class View extends Held {
         this.#set(options, (c, given) => this.#core.check(c.lightbin_view_update, at, given));
     }
     #set(options, call) {
+        only(options, [...names.viewOptions, 'layout'], 'options');
         const core = this.#core, merged = {...this.#options, ...options}, {projection, layout, ...others} = merged;
+        for (const side of ['width', 'height'])
+            if (merged[side] === undefined) refuse(`options.${side} is missing: give the viewport's in pixels`);
         core.scope(c => {
             const matrix = core.matrix(projection, layout, 'options.projection');
             const at = core.place('viewOptions', {...others, projection: matrix}, 'options');
@@ -383,8 +432,8 @@ class View extends Held {
             core.check(c.lightbin_view_describe, this[address], info);
             this.info = core.read('viewInfo', info);
             delete this.info.size;
+            this.#options = {...merged, projection: core.copy(Float64Array, matrix.doubles, 128)};
         });
-        this.#options = merged;
     }
     project(point) { return this.#moved(this.#core.c.lightbin_view_project, point, 'point'); }
     unproject(image) { return this.#moved(this.#core.c.lightbin_view_unproject, image, 'image'); }
@@ -400,17 +449,20 @@ class View extends Held {
         const core = this.#core;
         return core.scope(c => {
             const to = c.stackAlloc(8);
-            core.check(c.lightbin_view_depths, this[address], lower, upper, to);
+            core.check(c.lightbin_view_depths, this[address], ...reals({lower, upper}), to);
             return [...core.copy(Float32Array, to, 8)];
         });
     }
-    windowDepth(depth) { return this.#core.c.lightbin_view_window_depth(this[address], depth); }
+    windowDepth(depth) {
+        return this.#core.c.lightbin_view_window_depth(this[address], real(depth, 'depth'));
+    }
     shaderGrid(corner_x = 0, corner_y = 0) {
         return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_shader_grid,
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
     }
     shaderView(tolerance = 2) {
-        return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_shader_view, tolerance);
+        return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_shader_view,
+                               real(tolerance, 'tolerance'));
     }
     shaderReduce(corner_x = 0, corner_y = 0) {
         return this.#constants(Uint32Array, 'reduceConstants', this.#core.c.lightbin_shader_reduce,
@@ -441,20 +493,20 @@ class Slices extends Held {
     constructor(core, margin, made) {
         super(core, 'slices');
         this.#core = core;
-        this.#margin = margin;
+        this.#margin = real(margin, 'margin');
         this[address] = core.scope(made);
         this.count = core.c.lightbin_slices_count(this[address]);
     }
     /// The same slices in another module.
     static copy(core, slices, what) {
-        if (!(slices instanceof Slices)) refuse(`${what} must be slices of this package`);
+        if (!Slices.made(slices)) refuse(`${what} must be slices of this package`);
         return slices_of(core, slices.boundaries, slices.#margin);
     }
     get boundaries() {
         const core = this.#core, at = core.c.lightbin_slices_boundaries(this[address]);
         return at === 0 ? new Float32Array(0) : core.copy(Float32Array, at, 4 * (this.count - 1));
     }
-    at(depth) { return this.#core.c.lightbin_slices_at(this[address], depth); }
+    at(depth) { return this.#core.c.lightbin_slices_at(this[address], real(depth, 'depth')); }
     shaderWords() {
         const core = this.#core, count = this.count + 3;
         return core.copied(words => {
@@ -475,10 +527,10 @@ class Slices extends Held {
 }
 
 function slices_of(core, boundaries, margin = 0) {
-    if (!(boundaries?.length >= 0)) refuse('boundaries must be an array of depths');
+    if (!is_array(boundaries)) refuse('boundaries must be an array of depths');
     return new Slices(core, margin, c => {
         const at = c.stackAlloc(4);
-        core.stage(boundaries, at, 0);
+        core.stage(boundaries, 'boundaries', at, 0, boundaries.length);
         core.flush();
         const from = core.heap().getUint32(at, true);
         return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin, 0);
@@ -525,10 +577,10 @@ class Lists {
     get order() { return this.#array('order'); }
     get bins() { return this.#array('bins'); }
     get words() { return this.#array('words'); }
-    /// Takes memory for the lightbin_grid from the stack.
-    #placed() {
+    /// Writes the lightbin_grid: to the stack, or to where another was.
+    #placed(at) {
         const {size, wordsPerTile, words, wordCount, ...members} = this.#raw;
-        return this.#core.place('grid', members, 'grid');
+        return this.#core.place('grid', members, 'grid', at);
     }
     encode(format) {
         const core = this.#core, {rangeCount, idCount} = this.#raw;
@@ -537,7 +589,6 @@ class Lists {
             const bytes_at = c.stackAlloc(8);
             core.check(c.lightbin_encoded_bytes, from, BigInt(rangeCount), BigInt(idCount), bytes_at);
             const bytes = Number(core.heap().getBigUint64(bytes_at, true));
-            if (bytes > 0x7fffffff) out_of_memory();
             const to = this.#encoded.reserve(bytes), encoded = core.place('encoded');
             core.check(c.lightbin_encode, grid, from, to, BigInt(bytes), encoded);
             const {tilesCut, entriesCut, capacityNeeded} = core.read('encoded', encoded);
@@ -547,7 +598,7 @@ class Lists {
     splitKinds() {
         const core = this.#core, {rangeCount} = this.#raw;
         return core.scope(c => {
-            const grid = this.#placed(), to = this.#encoded.reserve(16 * Math.max(rangeCount, 1));
+            const grid = this.#placed(), to = this.#encoded.reserve(16 * rangeCount);
             core.check(c.lightbin_split_kinds, grid, to, BigInt(rangeCount));
             return new Uint32Array(c.memory.buffer, to, 4 * rangeCount);
         });
@@ -555,7 +606,8 @@ class Lists {
     append(...others) {
         const core = this.#core, grids = [this, ...others];
         for (const grid of others) {
-            if (!(grid instanceof Lists && grid.#core === core)) refuse('append: a grid was not made by this module');
+            if (!(Object(grid) === grid && #core in grid && grid.#core === core))
+                refuse('append: a grid was not made by this module');
             if (grid.idBytes !== this.idBytes)
                 refuse(`append: the ids of one grid have ${this.idBytes} bytes, those of another ${grid.idBytes}`);
         }
@@ -563,18 +615,17 @@ class Lists {
             refuse('append: a grid is given twice; each view needs the grid of a binner of its own');
         const [ranges, ids] = ['rangeCount', 'idCount']
             .map(key => grids.reduce((sum, grid) => sum + grid.#raw[key], 0));
-        const bytes = 8 * ranges + this.idBytes * ids;
-        if (bytes > 0x7fffffff) out_of_memory();
         return core.scope(c => {
-            const to = this.#encoded.reserve(bytes), ids_at = to + 8 * ranges;
+            const to = this.#encoded.reserve(8 * ranges + this.#raw.idBytes * ids), ids_at = to + 8 * ranges;
             const room = [to, BigInt(ranges), ids_at, BigInt(ids)];
-            let before = 0;
-            for (const grid of grids) {
-                const at = grid.#placed();
-                if (before === 0) core.check(c.lightbin_copy_grid, at, ...room);
-                else core.check(c.lightbin_append_grid, at, before, ...room);
-                before = at;
-            }
+            let before = core.place('grid'), next = core.place('grid');
+            for (const grid of grids)
+                core.scope(() => {
+                    const at = grid.#placed(next);
+                    if (grid === this) core.check(c.lightbin_copy_grid, at, ...room);
+                    else core.check(c.lightbin_append_grid, at, before, ...room);
+                    [before, next] = [at, before];
+                });
             const Type = this.idBytes === 2 ? Uint16Array : Uint32Array;
             return {ranges: new Uint32Array(c.memory.buffer, to, 2 * ranges),
                     ids: new Type(c.memory.buffer, ids_at, ids)};
@@ -625,12 +676,10 @@ class Binner extends Held {
     }
     bits(view, lights, max_lights, inputs) {
         const core = this.#core;
-        if (!(Number.isInteger(max_lights) && max_lights >= 0 && max_lights <= 0xffffffff))
-            refuse(`maxLights: ${String(max_lights)} is no number of lights`);
+        whole(max_lights, 'maxLights', 'uint32_t');
         return this.#call(view, lights, inputs, (c, ...given) => {
-            const {tilesX = 0, tilesY = 0} = view.info, wordsPerTile = Math.ceil(max_lights / 32);
+            const {tilesX = 0, tilesY = 0} = view?.info ?? {}, wordsPerTile = Math.ceil(max_lights / 32);
             const count = tilesX * tilesY * wordsPerTile;
-            if (count > 0x1fffffff) out_of_memory();
             const bits = core.place('bits'), words = this.#words.reserve(4 * Math.max(count, 1));
             core.check(c.lightbin_bin_bits, ...given, max_lights, words, BigInt(count), bits);
             return this.#bits.set(core.read('bits', bits,
@@ -671,17 +720,20 @@ function shader_options(core, generator, options) {
     const {options: struct, bindings} = generator, c = core.c;
     only(options, [...names[struct].filter(key => key !== 'slotsGiven' && !Object.hasOwn(bindings, key)), 'slots'],
         'options');
-    const {format, prefix, slots, ...others} = options, given = {...others, language: others.language ?? null};
-    if (format !== undefined) given.format = core.place('format', format, 'options.format');
+    const {prefix, slots, ...others} = options, given = {...others, language: others.language ?? null};
+    if (generator === snippet && given.format !== undefined)  // elsewhere it is an enum's value
+        given.format = core.place('format', given.format, 'options.format');
     if (prefix !== undefined) {
-        const bytes = new TextEncoder().encode(prefix + '\0');
+        // The library refuses ' ', and more than 1000 characters.
+        const text = typeof prefix === 'string' ? prefix.slice(0, 1001).replaceAll('\0', ' ') : ' ';
+        const bytes = new TextEncoder().encode(text + '\0');
         given.prefix = c.stackAlloc(bytes.length);
         new Uint8Array(c.memory.buffer).set(bytes, given.prefix);
     }
     if (slots !== undefined) {
         only(slots, Object.keys(bindings), 'options.slots');
-        for (const [name, binding] of Object.entries(bindings)) given[name] = {binding};
-        Object.assign(given, slots, {slotsGiven: 1});
+        for (const [name, binding] of Object.entries(bindings)) given[name] = slots[name] ?? {binding};
+        given.slotsGiven = 1;
     }
     return core.place(struct, given, 'options');
 }
@@ -714,8 +766,8 @@ function cull_plan(core, view, options, room) {
             const at = core.place('cullPlan'), count = c.stackAlloc(4), placed = shader_options(core, cull, options);
             const to_view = viewMatrix == null ? 0
                 : core.place('matrix', core.matrix(viewMatrix, layout, 'viewMatrix'), 'viewMatrix');
-            core.check(c.lightbin_plan_cull, copies[0][address], placed, whole(lights, 'lights'),
-                whole(entries, 'entries'), copies[1]?.[address] ?? 0, to_view, at);
+            core.check(c.lightbin_plan_cull, copies[0][address], placed, whole(lights, 'lights', 'uint32_t'),
+                whole(entries, 'entries', 'uint32_t'), copies[1]?.[address] ?? 0, to_view, at);
             const {scratchBytes, tileBytes, listBytes, orderBytes, binBytes} = core.read('cullPlan', at);
             const groups = core.copy(Uint32Array, at + members.groups[1], 8 * names.length);
             const numbers = c.lightbin_cull_passes(enums.slicing[options.slicing ?? 'no-slicing'], count);
@@ -767,14 +819,14 @@ class Lightbin {
     exponentialSlices(options) {
         const {count, first, last, margin = 0} = only(options, ['count', 'first', 'last', 'margin'], 'options');
         const core = this.#core;
-        return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'), first,
-            last, margin, 0));
+        return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'),
+            ...reals({first, last}), margin, 0));
     }
     linearSlices(options) {
         const {count, begin, end, margin = 0} = only(options, ['count', 'begin', 'end', 'margin'], 'options');
         const core = this.#core;
-        return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'), begin, end,
-            margin, 0));
+        return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'),
+            ...reals({begin, end}), margin, 0));
     }
     slicesFromBoundaries(options) {
         const {boundaries, margin = 0} = only(options, ['boundaries', 'margin'], 'options');
@@ -791,7 +843,11 @@ class Lightbin {
         return core.scope(() => shader_text(core, generator, options));
     }
     #shader_core() {
-        return this.#shaders ??= this.#load_shaders().then(exports => this.#cores[1] = new Core(exports));
+        return this.#shaders ??= this.#load_shaders().then(exports => this.#cores[1] = new Core(exports))
+            .catch(error => {
+                this.#shaders = undefined;  // the next call tries again
+                throw error;
+            });
     }
     async advise(view, lights, {bounds, ...costs} = {}) {
         const core = await this.#load_advice();
@@ -802,12 +858,13 @@ class Lightbin {
         });
     }
     async adviseSlices(view, lights, {clusters, zBins, depths, columns, rows, ...costs} = {}) {
-        if (!(depths?.length >= columns * rows)) refuse('depths must have columns * rows numbers', 'buffer-too-small');
+        if (!(is_array(depths) && depths.length >= columns * rows))
+            refuse('depths must have columns * rows numbers', 'buffer-too-small');
         const core = await this.#load_advice();
         const slices = Object.entries({clusters, zBins}).map(([name, from]) => Slices.copy(core, from, name)[address]);
         return plans(core, view, lights, costs, (view, lights, costs) => {
             const at = core.c.stackAlloc(4);
-            core.stage(depths, at, 0);
+            core.stage(depths, 'depths', at, 0, columns * rows);
             core.flush();
             return core.create(core.c.lightbin_advise_slices, view, lights, ...slices, core.heap().getUint32(at, true),
                 whole(columns, 'columns'), whole(rows, 'rows'), costs, 0);
@@ -821,8 +878,8 @@ class Lightbin {
             return core.text(text);
         });
     }
-    lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(intensity, cutoff); }
-    lightWindow(distance, range) { return this.#core.c.lightbin_light_window(distance, range); }
+    lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(...reals({intensity, cutoff})); }
+    lightWindow(distance, range) { return this.#core.c.lightbin_light_window(...reals({distance, range})); }
     get allocations() {
         const live = ({c, staging}) => c.live_allocations() - (staging.at !== 0 ? 1 : 0);
         return this.#cores.reduce((sum, core) => sum + live(core), 0);

@@ -7,7 +7,8 @@ export {LightbinError, hasSimd} from './lightbin.js';
 
 const file = name => readFile(new URL(name, import.meta.url));
 
-export function load({simd = hasSimd(), wasm, shaders, advice, ...others} = {}) {
+export function load(options) {
+    const {simd = hasSimd(), wasm, shaders, advice, ...others} = options ?? {};
     return load_module({simd, wasm: wasm ?? file(simd ? './lightbin_simd.wasm' : './lightbin.wasm'),
                         shaders: shaders ?? (() => file('./shaders.wasm')),
                         advice: advice ?? (() => file('./advice.wasm')), ...others});

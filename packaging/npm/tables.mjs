@@ -13,11 +13,15 @@ const camel = name => name.replaceAll(/_([a-z])/g, (_, letter) => letter.toUpper
 const kebab = name => name.toLowerCase().replaceAll('_', '-');
 const bare = type => type.replace(/^lightbin_/, '');
 
+// Values that the package, or the function that is given them, always refuses.
+const never = /^(depth_test\.split-box|cull_kind\.box)$/;
+
 const enums = {};
 for (const [, name, body] of header.matchAll(/typedef enum lightbin_(\w+) \{(.*?)\} lightbin_\1;/gs))
     enums[name] = Object.fromEntries(
         [...body.matchAll(/\bLIGHTBIN_(?:RESOURCE_|CULL_)?(\w+)\s*=\s*(\d+)/g)]
-            .map(([, value, number]) => [kebab(value), +number]));
+            .map(([, value, number]) => [kebab(value), +number])
+            .filter(([value]) => !never.test(`${name}.${value}`)));
 
 const script = fs.readFileSync(user, 'utf8');
 const named = name => script.includes(`'${camel(name)}'`) || script.includes(`structs.${camel(name)}.`);
@@ -26,7 +30,8 @@ const sizes = {int32_t: 4, uint32_t: 4, uint64_t: 8, float: 4, double: 8, size_t
 for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.*?)\n\} lightbin_\1;/gs)) {
     if (/\(\*/.test(body)) continue;  // a member is a function
     const struct = structs[name] = {bytes: 0, alignment: 1, members: {}};
-    // The comment after a member may say that it is "a lightbin_NAME", an enum's value.
+    // The comment after a member may say that it is "a lightbin_NAME", an enum's value, or name the values that it may
+    // have.
     const declaration = /^ *(?:const )?(\w+)(\*?)\s+([^;/]+);(?: *\/\*(.*?)\*\/)?/gm;
     for (const [, type, star, names, comment] of body.matchAll(declaration))
         for (const [i, declared] of names.split(/,\s*/).entries()) {
@@ -38,7 +43,13 @@ for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.
             const alignment = kind === 'struct' ? inner.alignment : bytes;
             const offset = Math.ceil(struct.bytes / alignment) * alignment;
             const value_of = [comment?.match(/\ba lightbin_(\w+)/)?.[1], member].find(known => known in enums);
-            const more = kind === 'struct' ? bare(type) : kind === 'int32_t' ? value_of : undefined;
+            const allowed = [...(comment ?? '').matchAll(/\bLIGHTBIN_(\w+)/g)].map(([, value]) => kebab(value))
+                .filter(value => Object.hasOwn(enums[value_of] ?? {}, value));
+            const own = `${name}_${member}`;
+            if (allowed.length > 0)
+                enums[own] = Object.fromEntries(allowed.map(value => [value, enums[value_of][value]]));
+            const more = kind === 'struct' ? bare(type) : kind !== 'int32_t' ? undefined
+                : own in enums ? own : value_of;
             struct.members[member] = [kind, offset, ...more === undefined ? [] : [more]];
             struct.bytes = offset + bytes * (count ?? 1);
             struct.alignment = Math.max(struct.alignment, alignment);
