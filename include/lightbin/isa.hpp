@@ -30,7 +30,7 @@ constexpr const char* to_string(Isa isa) {
 inline constexpr Isa compiled_isa = Isa::simd128;  // wider vectors would be misaligned on the stack (GCC bug 54412)
 #elif defined(LIGHTBIN_X86)
 inline constexpr Isa compiled_isa = Isa::avx512;
-#elif defined(LIGHTBIN_SIMD128)
+#elif defined(LIGHTBIN_HAS_SIMD128)
 inline constexpr Isa compiled_isa = Isa::simd128;
 #else
 inline constexpr Isa compiled_isa = Isa::scalar;

@@ -31,6 +31,15 @@ for compiler in g++ clang++-14 clang++-19; do
     done
 done
 
+# In C++20 it stands beside every header of the C++ side, before or behind them, and its values are those of abi.txt.
+(cd "$here/../../include" && printf '#include <%s>\n' lightbin/*.hpp) >"$work/cpp.hpp"
+echo '#include <lightbin/lightbin.h>' >"$work/c.hpp"
+sed -n 's/^  \(LIGHTBIN_[A-Z0-9_]*\) = \([0-9]*\)$/static_assert(\1 == \2);/p' "$here/abi.txt" >"$work/values.hpp"
+for order in 'c cpp' 'cpp c'; do
+    printf '#include "%s.hpp"\n' $order values >"$work/both.cpp"
+    g++ -std=c++20 -pedantic -Wall -Wextra -Wundef -Werror -fsyntax-only -I "$here/../../include" "$work/both.cpp"
+done
+
 # The file of the code, if it is compiled as C, is refused by one sentence.
 if gcc -std=c99 -DLIGHTBIN_IMPLEMENTATION -I "$here/../../include" -fsyntax-only -x c - 2>"$work/said" <<END
 #include <lightbin/lightbin.h>

@@ -16,18 +16,18 @@
 #if defined(LIGHTBIN_NO_SIMD) || defined(LIGHTBIN_MEMORY_SANITIZER)
 #elif defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC))
 #define LIGHTBIN_X86 1
-#define LIGHTBIN_SIMD128 1
+#define LIGHTBIN_HAS_SIMD128 1
 #elif defined(__wasm_simd128__)
-#define LIGHTBIN_SIMD128 1
+#define LIGHTBIN_HAS_SIMD128 1
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_NEON 1
-#define LIGHTBIN_SIMD128 1
+#define LIGHTBIN_HAS_SIMD128 1
 #endif
 
 // LIGHTBIN_NO_SCALAR, which users may define, leaves the scalar kernels out where the compiler may use vectors of 128 bits
 // in any function, so that the program runs on no machine without them: WebAssembly with -msimd128, 64-bit ARM, x86-64
 // with -march=x86-64-v2 and up. Only the reduction of depth keeps its scalar kernel, for rows of less than four samples.
-#if defined(LIGHTBIN_NO_SCALAR) && defined(LIGHTBIN_SIMD128) && \
+#if defined(LIGHTBIN_NO_SCALAR) && defined(LIGHTBIN_HAS_SIMD128) && \
     (!defined(LIGHTBIN_X86) || (defined(__SSSE3__) && defined(__SSE4_1__) && defined(__POPCNT__)))
 #define LIGHTBIN_VECTORS_ONLY 1
 #endif

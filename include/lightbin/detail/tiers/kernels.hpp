@@ -31,7 +31,7 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
     if (isa == Isa::avx512) return pick(avx512::Tier{});
     if (isa == Isa::avx2) return pick(avx2::Tier{});
 #endif
-#if defined(LIGHTBIN_SIMD128)
+#if defined(LIGHTBIN_HAS_SIMD128)
     if (isa == Isa::simd128) return pick(simd128::Tier{});
 #endif
     static_cast<void>(isa);

@@ -10,7 +10,7 @@
 #define LIGHTBIN_TIER scalar
 #include <lightbin/detail/tiers/shape_kernels.inl>
 
-#if defined(LIGHTBIN_SIMD128)
+#if defined(LIGHTBIN_HAS_SIMD128)
 LIGHTBIN_SIMD128_BEGIN
 #define LIGHTBIN_TIER simd128
 #include <lightbin/detail/tiers/shape_kernels.inl>

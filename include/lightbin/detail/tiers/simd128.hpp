@@ -6,7 +6,7 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/tiers/tier.hpp>
 
-#if defined(LIGHTBIN_SIMD128)
+#if defined(LIGHTBIN_HAS_SIMD128)
 
 #if defined(LIGHTBIN_X86)
 #include <smmintrin.h>
