@@ -71,7 +71,7 @@ lightbin::Box box_of(const GpuBox& box) {
 }
 
 GpuLight entry_of(const GpuBox& box, std::size_t number) {
-    const lightbin::Sphere sphere = box_of(box);
+    const lightbin::Sphere sphere = bounding_sphere(box_of(box));
     return {{sphere.x, sphere.y, sphere.z, sphere.radius},
             {0, 0, 0, static_cast<float>(number + 1)},
             {0, 0, 0, 1}};

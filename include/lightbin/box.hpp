@@ -4,7 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/tiers/shape_kernels.hpp>
 #include <lightbin/matrix.hpp>
 
@@ -18,43 +18,6 @@ template <> inline constexpr bool kernels_included<LightKind::box> = true;
 
 /// A Box that is bad input: skipped and counted.
 inline constexpr Box bad_box = {0, 0, 0, -1, 0, 0, 0, {}};
-
-inline Triple scaled(const Triple& v, double factor) {
-    return {rounded(v.x * factor), rounded(v.y * factor), rounded(v.z * factor)};
-}
-inline Triple sum(const Triple& a, const Triple& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-inline Triple half_axis(const Box& box, int i) {
-    const float(&axis)[3] = box.half_axes[i];
-    return {static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])};
-}
-
-/// Returns a sphere around all corners of a box; a bad Sphere for bad input. Its centre lies on the third half axis,
-/// as far from the corners of one face as from those of the other where the half axes are at right angles.
-inline Sphere sphere_of_corners(const Box& box) {
-    const Triple centre = {static_cast<double>(box.box_x), static_cast<double>(box.box_y),
-                           static_cast<double>(box.box_z)};
-    const Triple across[] = {sum(half_axis(box, 0), half_axis(box, 1)),
-                             sum(half_axis(box, 0), scaled(half_axis(box, 1), -1))};
-    const Triple along = half_axis(box, 2);
-    const double taper = static_cast<double>(box.taper), width = max_of(length(across[0]), length(across[1])),
-                 depth = length(along);
-    if (!finite(centre) || !is_finite(width) || !is_finite(depth) || !(width + depth > 0) || !(taper >= 0) ||
-        !(taper <= 1))
-        return bad_sphere;
-    double shift = rounded((1 - rounded(taper * taper)) * (width * width)) / rounded(4 * depth * depth);
-    shift = shift < 1 ? shift : depth > 0 ? 1.0 : 0.0;
-    double radius = 0;
-    for (const Triple& diagonal : across)
-        for (const double side : {-1.0, 1.0}) {
-            const Triple wide = sum(scaled(along, 1 - shift), scaled(diagonal, side)),
-                         narrow = sum(scaled(along, -1 - shift), scaled(diagonal, rounded(side * taper)));
-            radius = max_of(radius, max_of(length(wide), length(narrow)));
-        }
-    return sphere_around_nearly(sum(centre, scaled(along, shift)), radius);
-}
 
 /// Returns a box with these half axes, and the sphere of its own corners.
 inline Box box_with_own_sphere(const Triple& centre, const Triple (&half_axes)[3], double taper) {
@@ -105,19 +68,6 @@ inline Box right_angled_box(const Triple& centre, const Triple& along, double ha
 }
 
 }  // namespace detail
-
-/// Returns a sphere that contains all points of a Box: the Box's own sphere or, if smaller, one around the box's
-/// corners. A bad Box gives a bad Sphere.
-inline Sphere bounding_sphere(const Box& box) {
-    const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
-    const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);
-    if (!finite || !(own.radius > 0) || !(corners.radius > 0)) return detail::bad_sphere;
-    return corners.radius < own.radius ? corners : own;
-}
-
-inline Box::operator Sphere() const {
-    return bounding_sphere(*this);
-}
 
 /// Returns a whole box, such as that of a decal or a reflection probe: its sphere is one around its corners.
 ///

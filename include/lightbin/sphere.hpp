@@ -39,10 +39,6 @@ struct Spot {
     static constexpr Spot whole(const Sphere& sphere) {
         return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
     }
-
-    /// Converts to least_sphere(*this) (spot.hpp), for functions that take only spheres. A Binner takes spots
-    /// themselves, and lists fewer tiles for them than for these spheres.
-    operator Sphere() const;
 };
 
 /// The region that a decal, a probe, a projector or a light in a room can reach: the points of a sphere that lie in
@@ -65,10 +61,6 @@ struct Box {
     float box_x, box_y, box_z;
     float half_axes[3][3];
     float taper = 1;
-
-    /// Converts to bounding_sphere(*this) (box.hpp), for functions that take only spheres. A Binner takes boxes
-    /// themselves, and lists fewer tiles for them than for these spheres.
-    operator Sphere() const;
 };
 
 /// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots, tubes and
-// rectangles.
+// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots (least_sphere()),
+// tubes and rectangles.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/tiers/shape_kernels.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -14,38 +14,6 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 namespace detail {
 template <> inline constexpr bool kernels_included<LightKind::spot> = true;
 }  // namespace detail
-
-/// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
-/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more
-/// and an infinite radius give the spot's own sphere; a bad spot gives a bad Sphere.
-inline Sphere least_sphere(const Spot& spot) {
-    const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
-                                 static_cast<double>(spot.axis_z)};
-    const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),
-                 radius = static_cast<double>(spot.radius);
-    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1))
-        return detail::bad_sphere;
-    const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
-    if (cosine <= 0 || spot.radius == detail::infinity) return own;
-
-    // The spot's farthest points from any point on the axis are the apex or the rim, the circle where cone and sphere
-    // meet. Up to a half angle of 45 degrees the least sphere passes through both; beyond, it is the sphere that has
-    // the rim as a great circle. The square of a float is exact in double.
-    const double cosine2 = cosine * cosine;
-    const bool narrow = 2 * cosine2 >= 1;
-    const double along = narrow ? radius / (2 * cosine) : radius * cosine;
-    const double step = along / axis_length;
-    const Sphere least =
-        detail::sphere_around_nearly({static_cast<double>(spot.x) + detail::rounded(step * axis.x),
-                                      static_cast<double>(spot.y) + detail::rounded(step * axis.y),
-                                      static_cast<double>(spot.z) + detail::rounded(step * axis.z)},
-                                     narrow ? along : radius * detail::root_of(1 - cosine2));
-    return least.radius < own.radius ? least : own;
-}
-
-inline Spot::operator Sphere() const {
-    return least_sphere(*this);
-}
 
 /// Returns the least sphere that contains all points within `radius` of the line segment from `a` to `b`: a tube with
 /// round ends. Up to rounding: the sphere's radius exceeds the exact one by at most 2^-22 of the sum of the exact

@@ -139,5 +139,21 @@ void mistake() {
 #elif MISTAKE == 39  // to bin Spots include <lightbin/spot.hpp>, and to bin Boxes <lightbin/box.hpp>
     const auto to_box = [](const Lamp&) { return lightbin::Box(); };
     (void)binner.bin(*view, lightbin::world_space(lamps, projection, to_box));
+#elif MISTAKE == 40  // conver(t|sion).*Spot.*Sphere
+    [[maybe_unused]] const lightbin::Sphere sphere = lightbin::Spot();
+#elif MISTAKE == 41  // conver(t|sion).*Box.*Sphere
+    [[maybe_unused]] const lightbin::Sphere sphere = lightbin::Box();
 #endif
 }
+
+#if !MISTAKE
+/// No mistake: mixed lights of the kinds whose headers are included link, without the other kind's.
+int main() {
+    const std::vector<lightbin::Sphere> spheres;
+    const std::vector<lightbin::Spot> spots;
+    const double projection[4][4] = {};
+    const auto view = lightbin::View::from_projection(projection, {64, 64});
+    lightbin::Binner<lightbin::Options{.coverage = true}> binner;
+    return view && binner.bin(*view, lightbin::lights(spheres, spots)) ? 1 : 0;
+}
+#endif

@@ -16,15 +16,15 @@ sed -n '/^#include/p' "$here/refused.cpp" >"$work/headers.hpp"
 "$compiler" -std=c++20 -I "$here/../../include" -x c++-header "$work/headers.hpp" -o "$work/headers.hpp.$compiled"
 
 compile() {
-    "$compiler" -std=c++20 -I "$here/../../include" -include "$work/headers.hpp" -fsyntax-only "$here/refused.cpp" "$@"
+    "$compiler" -std=c++20 -I "$here/../../include" -include "$work/headers.hpp" "$here/refused.cpp" "$@"
 }
-compile -DMISTAKE=0
+compile -DMISTAKE=0 -o "$work/program"
 
 mistakes=$(grep -oE 'MISTAKE == [0-9]+' "$here/refused.cpp" | grep -oE '[0-9]+')
 count=0
 for mistake in $mistakes; do
     one_error error: "$(sed -nE "s,.*MISTAKE == $mistake  // (.*),\1,p" "$here/refused.cpp")" "mistake $mistake by $compiler" \
-        compile "-DMISTAKE=$mistake"
+        compile -fsyntax-only "-DMISTAKE=$mistake"
     count=$((count + 1))
 done
 [ "$mistake" -eq "$count" ]

@@ -55,6 +55,7 @@ struct Boxes {
     static const std::vector<BoxSet>& sets() { return box_sets(); }
     static oracle::Light ball(const BoxLight& light) { return {light.x, light.y, light.z, light.radius}; }
     static std::vector<lightbin::Box> to_library(const std::vector<BoxLight>& lights) { return as_boxes(lights); }
+    static lightbin::Sphere least(const lightbin::Box& box) { return bounding_sphere(box); }
     static std::vector<BoxLight> into_world(const std::vector<BoxLight>& lights, const ViewMatrix& view) {
         return ::into_world(lights, view);
     }

@@ -175,8 +175,10 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
         Subjects<Kind> subjects(examiner, matrix ? Kind::into_world(aimed, *matrix) : aimed, matrix, tally);
         const std::size_t count = aimed.size();
         std::vector<Light> least;  // the spheres that the lights are binned as, about
-        for (const lightbin::Sphere s : Kind::to_library(aimed))
+        for (const auto& light : Kind::to_library(aimed)) {
+            const lightbin::Sphere s = Kind::least(light);
             least.push_back({s.x, s.y, s.z, s.radius});
+        }
         const Bounds bounds = make_bounds(camera, aim, least, static_cast<BoundsShape>(seed / 2 % 3), random);
         lightbin::ZBounds given = {.min = bounds.min, .max = bounds.max};
         if (split) given.gap_min = bounds.gap_min, given.gap_max = bounds.gap_max;

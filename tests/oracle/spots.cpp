@@ -37,6 +37,7 @@ struct Spots {
     static const std::vector<SpotSet>& sets() { return spot_sets(); }
     static oracle::Light ball(const SpotLight& light) { return light.ball; }
     static std::vector<lightbin::Spot> to_library(const std::vector<SpotLight>& lights) { return as_spots(lights); }
+    static lightbin::Sphere least(const lightbin::Spot& spot) { return least_sphere(spot); }
     static std::vector<SpotLight> into_world(const std::vector<SpotLight>& lights, const ViewMatrix& view) {
         return ::into_world(lights, view);
     }

@@ -660,7 +660,7 @@ TEST_CASE("verdicts: spots have the same, and fewer evaluations than their spher
     std::vector<Sphere> least;
     for (const glm::vec4& light : street.lights) {
         spots.push_back({light.x, light.y, light.z, 2 * light.w, 0, -1, 0.2f, 0.9f});
-        least.push_back(spots.back());
+        least.push_back(least_sphere(spots.back()));
     }
     const Advice as_spots = advised_on(each_100, street.view, spots, {.evaluation_ns = 1}, street.bounds.reduced),
                  as_spheres = advised_on(each_100, street.view, least, {.evaluation_ns = 1}, street.bounds.reduced);

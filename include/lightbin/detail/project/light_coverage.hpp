@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/coverage.hpp>
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/project/spheres_in_double.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/view.hpp>
@@ -36,10 +37,10 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
             Box box = {sphere.x,        sphere.y,        sphere.z, sphere.radius, light.centre[0],
                        light.centre[1], light.centre[2], {},       light.taper};
             copy_items(&light.half_axes[0][0], 9, &box.half_axes[0][0]);
-            sphere = box;  // bounding_sphere(box)
+            sphere = bounding_sphere(box);
         } else if (light.tolerance > 0) {
-            sphere = Spot{sphere.x,     sphere.y,     sphere.z,     sphere.radius,  // least_sphere(spot)
-                          light.axis_x, light.axis_y, light.axis_z, light.cosine};
+            sphere = least_sphere({sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z,
+                                   light.cosine});
         }
         sphere.radius = float_above(static_cast<double>(sphere.radius) + static_cast<double>(light.tolerance));
         return {sphere, light.nearest, light.farthest};

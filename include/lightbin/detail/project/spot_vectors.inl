@@ -2,6 +2,7 @@
 // The transform of spots to view space, whose rounding view_spot.hpp derives. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/project/world_to_view.inl>
 #endif
 
@@ -27,7 +28,7 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
     store_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
-        const Sphere least = given[lane];
+        const Sphere least = least_sphere(given[lane]);
         moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);

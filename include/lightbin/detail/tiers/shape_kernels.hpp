@@ -3,6 +3,7 @@
 // program without spots and boxes compiles in less time if it does not read them.
 #pragma once
 
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/tiers/kernels.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
