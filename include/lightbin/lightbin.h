@@ -787,8 +787,8 @@ LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const li
 /* ---- Shader text that reads the lists ---- */
 
 typedef enum lightbin_shader_language {
-    LIGHTBIN_GLSL_330 = 0,    /* OpenGL 3.3 to 4.2 */
-    LIGHTBIN_GLSL_430 = 1,    /* OpenGL 4.3 and later */
+    LIGHTBIN_GLSL_430 = 0,    /* OpenGL 4.3 and later */
+    LIGHTBIN_GLSL_330 = 1,    /* OpenGL 3.3 to 4.2 */
     LIGHTBIN_GLSL_VULKAN = 2, /* GLSL 450 for Vulkan */
     LIGHTBIN_ESSL_300 = 3,    /* OpenGL ES 3.0, WebGL 2 */
     LIGHTBIN_ESSL_310 = 4,    /* OpenGL ES 3.1 and later */

@@ -14,8 +14,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 enum class ShaderLanguage : std::uint8_t {
-    glsl_330,     ///< OpenGL 3.3 to 4.2
     glsl_430,     ///< OpenGL 4.3 and later
+    glsl_330,     ///< OpenGL 3.3 to 4.2
     glsl_vulkan,  ///< GLSL 450 for Vulkan
     essl_300,     ///< OpenGL ES 3.0, WebGL 2
     essl_310,     ///< OpenGL ES 3.1 and later
@@ -25,7 +25,7 @@ enum class ShaderLanguage : std::uint8_t {
 };
 
 constexpr const char* to_string(ShaderLanguage value) {
-    return detail::name_at(value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0",
+    return detail::name_at(value, {"glsl_430", "glsl_330", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0",
                                    "hlsl_5_1", "wgsl"});
 }
 

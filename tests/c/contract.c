@@ -771,6 +771,28 @@ static void test_cull(void) {
     lightbin_view_destroy(view);
 }
 
+/* Structs of shaders whose members are all 0 but for `size` are the defaults, which are no error. */
+static void test_shader_defaults(void) {
+    lightbin_snippet_options snippet;
+    lightbin_reduce_options reduce;
+    lightbin_cull_options cull;
+    lightbin_shader* shader = NULL;
+    int kind;
+    CLEAR(snippet);
+    CLEAR(reduce);
+    CLEAR(cull);
+    for (kind = 0; kind < 3; ++kind) {
+        const lightbin_result result = kind == 0   ? lightbin_shader_snippet(&snippet, NULL, &shader)
+                                       : kind == 1 ? lightbin_reduce_shader(&reduce, NULL, &shader)
+                                                   : lightbin_cull_shader(&cull, NULL, &shader);
+        if (result.error == LIGHTBIN_LEFT_OUT) continue;
+        CHECK(result.error == LIGHTBIN_OK);
+        CHECK(strstr(lightbin_shader_text(shader), "std430") != NULL); /* storage buffers, which GLSL 4.30 has */
+        lightbin_shader_destroy(shader);
+        shader = NULL;
+    }
+}
+
 /* Everything once, with memory of `heap`. Returns the first error. */
 static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* sum) {
     lightbin_view_options view_given = view_options();
@@ -904,6 +926,7 @@ int main(int count, char** words) {
     test_grids();
     test_depth();
     test_cull();
+    test_shader_defaults();
     test_memory(!no_failures);
     if (failures == 0) puts("every check passed");
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -654,7 +654,7 @@ TEST_CASE("C: a view knows what it knows in C++") {
 }
 
 TEST_CASE("C: shader texts and their data are those of C++") {
-    for (int language = LIGHTBIN_GLSL_330; language <= LIGHTBIN_WGSL; ++language)
+    for (int language = LIGHTBIN_GLSL_430; language <= LIGHTBIN_WGSL; ++language)
         for (int storage = LIGHTBIN_STORAGE_BUFFER; storage <= LIGHTBIN_BYTE_ADDRESS; ++storage)
             for (int slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
                 CAPTURE(language);
@@ -745,7 +745,7 @@ struct CullOptions {
         };
         // In a quarter of the cases any value, so that most are not refused.
         const bool any = random.integer(0, 3) == 0;
-        both(c.language, cpp.language, LIGHTBIN_GLSL_330, LIGHTBIN_WGSL);
+        both(c.language, cpp.language, LIGHTBIN_GLSL_430, LIGHTBIN_WGSL);
         if (!any && !detail::Dialect{cpp.language}.storage_buffers)
             c.language = LIGHTBIN_WGSL, cpp.language = ShaderLanguage::wgsl;
         both(c.kind, cpp.kind, LIGHTBIN_CULL_SPHERE, any ? LIGHTBIN_CULL_BOX : LIGHTBIN_CULL_SPOT);

@@ -150,7 +150,7 @@ TEST_CASE("every enum has words") {
     check_words(DepthFormat::float32, DepthFormat::unorm16);
     check_words(ErrorCode::matrix_not_finite, ErrorCode::scratch_too_large);
     check_words(ListEncoding::offset_count, ListEncoding::bitmask);
-    check_words(ShaderLanguage::glsl_330, ShaderLanguage::wgsl);
+    check_words(ShaderLanguage::glsl_430, ShaderLanguage::wgsl);
     check_words(ShaderResource::uniform_vector, ShaderResource::writable_buffer);
     check_words(TexelFormat::none, TexelFormat::r32f);
     check_words(ListStorage::storage_buffer, ListStorage::byte_address);
