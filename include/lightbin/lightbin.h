@@ -32,7 +32,8 @@
  *   Structs   A struct whose first member is `size` is passed with size = sizeof of the struct, and all members that
  *             are not set must be 0, which is the default of each. So a program goes on working with a later lightbin
  *             whose structs have more members. A struct that is newer than the library works as long as the members
- *             that the library does not know are 0.
+ *             that the library does not know are 0. No struct will have more than 1,024 bytes: a greater `size` is
+ *             refused, as that of a struct that was not set up.
  *   Enums     Members of structs that hold an enum's value have the type int32_t, so that their size is the same for
  *             all compilers and languages. A number that is no value of the enum is refused.
  *   Handles   A handle, such as a lightbin_view, is made by functions whose comments name the one that frees it. That

@@ -110,9 +110,7 @@ inline const char* sentence_of(std::int32_t error) {
         return "this pointer is null and must not be";
     case LIGHTBIN_WRONG_SIZE:
         return "`size` must be sizeof of the struct, {available}, and is {needed}; of a newer lightbin's "
-               "struct all "
-               "that "
-               "this one does not know must be 0";
+               "struct all that this one does not know must be 0";
     case LIGHTBIN_OVERLAP:
         return "this memory is to be written, and overlaps other memory of the call";
     case LIGHTBIN_LEFT_OUT:
@@ -131,8 +129,7 @@ inline const char* sentence_of(std::int32_t error) {
                "clusters read no bounds, and lights in view space no matrix";
     case LIGHTBIN_OPTIONS_NOT_TOGETHER:
         return "this binner's options do not go together: clusters have no interval and no split_box test "
-               "and no "
-               "bitmasks, and grids for transparency need Z bounds";
+               "and no bitmasks, and grids for transparency need Z bounds";
     case LIGHTBIN_BUFFER_TOO_SMALL:
         return "this memory holds {available} elements, and {needed} are needed";
     case LIGHTBIN_COVERAGE_IS_OFF:
@@ -173,6 +170,9 @@ inline std::size_t write_text(const char* text, std::size_t length, char* to, st
     return length;
 }
 
+/// The greatest `size` that is followed, so that one of chance is not followed through the caller's memory.
+inline constexpr std::uint32_t max_size = 1024;
+
 /// The size of a struct in the first version of lightbin.h that had it. A struct that has grown since is named here.
 template <class Struct> inline constexpr std::size_t first_size = sizeof(Struct);
 
@@ -180,9 +180,10 @@ template <class Struct> inline constexpr std::size_t first_size = sizeof(Struct)
 /// that the library does not know are 0.
 template <class Struct> lightbin_result check_size(const Struct* given, const char* name) {
     if (given == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name);
+    static_assert(sizeof(Struct) <= max_size);
     std::uint32_t size = 0;
     std::memcpy(&size, given, sizeof size);
-    bool known = size >= first_size<Struct>;
+    bool known = size >= first_size<Struct> && size <= max_size;
     for (std::size_t i = sizeof(Struct); known && i < size; ++i)
         known = reinterpret_cast<const unsigned char*>(given)[i] == 0;
     return known ? succeeded() : refused(LIGHTBIN_WRONG_SIZE, name, size, sizeof(Struct));
