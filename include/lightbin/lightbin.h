@@ -257,7 +257,9 @@ typedef enum lightbin_window_origin {
 
 typedef struct lightbin_view_options {
     uint32_t size;
-    int32_t width, height; /* of the viewport, 0 to 32768 pixels; an empty viewport has no tiles */
+    /* Of the viewport, 0 to 32768 pixels. An empty viewport, as of a minimised window, has no tiles and no lists: its
+     * frames are to be skipped. */
+    int32_t width, height;
     int32_t tile_size;     /* side of a square tile in pixels, 1 or more; 0: 32 */
     /* Maps view space to clip space: any perspective or orthographic projection, also off-centre, with an infinite far
      * plane, with reversed Z, and of a right-handed or left-handed view space. Any other matrix is an error. */
@@ -304,6 +306,7 @@ typedef struct lightbin_view_info {
     int32_t looks_behind;       /* all orthographic depths are behind the eye: is reversed_z right? */
     int32_t looks_zero_to_one; /* no depth reaches NDC -1: is clip_depth right? */
     int32_t pixels_not_square; /* by more than 2 %: is the viewport's size stale, or the aspect inverted? */
+    int32_t viewport_empty;    /* the width or the height is 0: were they given? */
 } lightbin_view_info;
 
 /* Describes a view. Set info->size before. */

@@ -34,6 +34,7 @@ struct ViewSummary {
     bool looks_zero_to_one;
     /// The viewport's pixels are off square by more than 2 %: its size may be stale, or the aspect inverted.
     bool pixels_not_square;
+    bool viewport_empty;  ///< the width or the height is 0, so that there are no tiles: was it given?
 };
 
 /// Returns a summary in one line of text, with a question for each flag that is set.
@@ -60,6 +61,8 @@ inline Text to_string(const ViewSummary& view) {
     if (view.looks_zero_to_one) line.append("; no depth reaches -1: is the option clip_depth right?");
     if (view.pixels_not_square)
         line.append("; pixels are not square: is the viewport's size stale, or the aspect inverted?");
+    if (view.viewport_empty)
+        line.append("; no pixels: were width and height given? Frames of a minimised window are to be skipped");
     return line;
 }
 

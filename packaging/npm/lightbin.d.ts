@@ -56,7 +56,7 @@ export interface ViewInfo {
     readonly orthographic: number, reversedZ: number, xFlipped: number, yFlipped: number, looksDownNegativeZ: number;
     /** 1 where the matrix or the viewport looks like a common mistake. */
     readonly looksTransposed: number, looksLikeViewMatrix: number, looksTurned: number, looksBehind: number;
-    readonly looksZeroToOne: number, pixelsNotSquare: number;
+    readonly looksZeroToOne: number, pixelsNotSquare: number, viewportEmpty: number;
 }
 
 interface Disposable {

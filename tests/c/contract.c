@@ -188,7 +188,7 @@ static void test_views(void) {
     float numbers[16];
     double point[3] = {0, 0, -1};
     float depths[2];
-    char text[8] = "";
+    char text[8] = "", line[512];
     CLEAR(info);
 
     CHECK(refuses(lightbin_view_create(NULL, NULL, &view), LIGHTBIN_NULL_ARGUMENT, "options"));
@@ -241,10 +241,17 @@ static void test_views(void) {
     CHECK(info.width == width && info.tiles_x == 20 &&
           info.tiles_y == 13); /* as before the update that was refused */
     options = view_options();
+    options.width = options.height = 0; /* forgotten, or of a minimised window: asked about */
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
+    CHECK(info.viewport_empty == 1 && info.tiles_x == 0);
+    lightbin_view_text(view, line, sizeof line);
+    CHECK(strstr(line, "were width and height given?") != NULL);
+    options = view_options();
     options.tile_size = 0;
     CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
     CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
-    CHECK(info.tile_size == 32 && info.size == sizeof info);
+    CHECK(info.tile_size == 32 && info.size == sizeof info && info.viewport_empty == 0);
     CHECK(refuses(lightbin_view_describe(NULL, &info), LIGHTBIN_NULL_ARGUMENT, "view"));
     CHECK(refuses(lightbin_view_describe(view, NULL), LIGHTBIN_NULL_ARGUMENT, "info"));
     CHECK(lightbin_view_text(view, text, sizeof text) > 40 && strcmp(text, "perspec") == 0);

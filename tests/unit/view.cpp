@@ -174,7 +174,8 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
         const std::pair<bool, const char*> all[] = {
             {of.looks_transposed, "transposed"}, {of.looks_like_view_matrix, "view matrix"},
             {of.looks_turned, "turned"},         {of.looks_behind, "behind"},
-            {of.looks_zero_to_one, "0 to 1"},    {of.pixels_not_square, "pixels"}};
+            {of.looks_zero_to_one, "0 to 1"},    {of.pixels_not_square, "pixels"},
+            {of.viewport_empty, "empty"}};
         std::string doubts;
         std::ptrdiff_t count = 0;
         for (const auto& [doubted, name] : all)
@@ -185,7 +186,9 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
     };
     check(summary(good), "");
     check(summary(3.0f * good), "");
-    check(summary(good, {}), "");
+    check(summary(good, {}), "empty");
+    check(summary(good, {0, 1080}), "empty");
+    check(summary(good, {1920, 0}), "empty");
     check(summary(flipped * glm::perspectiveLH_ZO(1.0f, 1.5f, 100.0f, 0.25f), {150, 100}, zero_to_one), "");
     check(summary(glm::ortho(-4.0f, 12.0f, -3.0f, 6.0f, 0.0f, 10.0f)), "");
     check(summary(good, {1366, 768}), "");
@@ -259,7 +262,8 @@ void check_summary(const Made& made, lightbin::Extent viewport) {
     CHECK(read.x_flipped == (flip_x < 0));
     CHECK(read.y_flipped == (flip_y < 0));
     CHECK(!read.looks_zero_to_one);
-    CHECK(read.pixels_not_square == (viewport.width > 0 && viewport.height > 0));
+    CHECK(read.viewport_empty == (viewport.width == 0 || viewport.height == 0));
+    CHECK(read.pixels_not_square == !read.viewport_empty);
     CHECK(std::string(to_string(read)).find("nan") == std::string::npos);
 }
 

@@ -146,6 +146,7 @@ lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_
     known.looks_behind = summary.looks_behind;
     known.looks_zero_to_one = summary.looks_zero_to_one;
     known.pixels_not_square = summary.pixels_not_square;
+    known.viewport_empty = summary.viewport_empty;
     write(known, info);
     return result;
 }

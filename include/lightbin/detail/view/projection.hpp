@@ -197,7 +197,8 @@ struct Projection {
                 .looks_turned = m[0][0] < 0 && m[1][1] < 0,
                 .looks_behind = flat && camera.far_depth <= 0,
                 .looks_zero_to_one = never_minus_one,
-                .pixels_not_square = width > 0 && height > 0 && !(width_off <= 0.02 * width)};
+                .pixels_not_square = width > 0 && height > 0 && !(width_off <= 0.02 * width),
+                .viewport_empty = width == 0 || height == 0};
         // clang-format on
     }
 };
