@@ -28,7 +28,9 @@
  * Conventions that hold for every function
  *   Results   A function that can refuse its input returns a lightbin_result. It worked if result.error is LIGHTBIN_OK;
  *             lightbin_error_text() writes a sentence. After an error nothing was written to the caller's memory and no
- *             handle was made or changed, unless the function says otherwise; the next call works as usual.
+ *             handle was made or changed, unless the function says otherwise; the next call works as usual. Any
+ *             function may return LIGHTBIN_OUT_OF_MEMORY, LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_WRONG_SIZE,
+ *             LIGHTBIN_OVERLAP, LIGHTBIN_LEFT_OUT and LIGHTBIN_NOT_A_VALUE; comments list all others.
  *   Structs   A struct whose first member is `size` is passed with size = sizeof of the struct, and all members that
  *             are not set must be 0, which is the default of each. So a program goes on working with a later lightbin
  *             whose structs have more members. A struct that is newer than the library works as long as the members
@@ -484,9 +486,9 @@ typedef struct lightbin_z_bounds_buffers {
     size_t tiles;
 } lightbin_z_bounds_buffers;
 
-/* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors: a sample
- * count outside 1 to 8; a row pitch shorter than a row; too few samples or tiles; overlapping memory;
- * LIGHTBIN_NO_SUCH_ISA. */
+/* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors:
+ * LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
+ * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles; LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
                                                    const lightbin_depth_buffer* buffer,
                                                    const lightbin_z_bounds_buffers* out,
@@ -542,8 +544,7 @@ typedef struct lightbin_binner lightbin_binner;
  * options    null: the defaults, all 0
  * allocator  null: malloc() and free(). It is copied.
  *
- * Errors: an option that the program was compiled without; a value or a combination that there is not;
- * LIGHTBIN_NO_SUCH_ISA. */
+ * Errors: LIGHTBIN_OPTIONS_NOT_TOGETHER; LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                                     const lightbin_allocator* allocator,
                                                     lightbin_binner** binner);
@@ -592,10 +593,14 @@ typedef struct lightbin_grid {
 } lightbin_grid;
 
 /* Makes the lists. On success every cell's list has, in ascending order, the id of every light that meets the cell.
- * Errors: more lights than the ids can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
- * block of 8x8 tiles; a view matrix that is not affine; inputs that are missing, too short or not read.
  *
- * inputs  null: none */
+ * inputs  null: none
+ *
+ * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number; LIGHTBIN_TOO_MANY_ENTRIES, LIGHTBIN_TOO_MANY_CELLS
+ * and LIGHTBIN_TOO_MANY_LIST_PLACES, more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
+ * tiles; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
+ * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs;
+ * LIGHTBIN_CALLBACK_THREW, of lightbin_threads::run. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
@@ -626,8 +631,9 @@ typedef struct lightbin_bits {
  * words, word_count  the caller's memory, and how many words of 32 bits it has. Other words than the tiles' are not
  *                    written
  *
- * Errors: those of lightbin_bin() except for too many entries; LIGHTBIN_BIT_BUFFER_TOO_SMALL; LIGHTBIN_IDS_TOO_NARROW,
- * more lights than max_lights. After LIGHTBIN_OUT_OF_MEMORY some of the words may have been written. */
+ * Errors: those of lightbin_bin() except for too many entries; LIGHTBIN_OPTIONS_NOT_TOGETHER, with clusters;
+ * LIGHTBIN_BIT_BUFFER_TOO_SMALL; LIGHTBIN_IDS_TOO_NARROW, more lights than max_lights. After LIGHTBIN_OUT_OF_MEMORY
+ * some of the words may have been written. */
 LIGHTBIN_API lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
                                                const lightbin_lights* lights, const lightbin_inputs* inputs,
                                                uint32_t max_lights, uint32_t* words, uint64_t word_count,
@@ -654,8 +660,8 @@ LIGHTBIN_API lightbin_result lightbin_binner_coverage(const lightbin_binner* bin
  * numbers: all offsets and ids must be inside of the arrays that they refer to. */
 
 /* Copies the ranges and ids of a grid to the beginning of the caller's memory, which is only written, in ascending
- * order, and so may be a mapped GPU buffer. On success grid->ranges and grid->ids refer to the copies. Errors: memory
- * that is too small.
+ * order, and so may be a mapped GPU buffer. On success grid->ranges and grid->ids refer to the copies. Errors:
+ * LIGHTBIN_RANGE_BUFFER_TOO_SMALL and LIGHTBIN_ID_BUFFER_TOO_SMALL.
  *
  * range_capacity, id_capacity  how many ranges and ids there is memory for */
 LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, lightbin_range* ranges,
@@ -669,9 +675,9 @@ LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, lightbin_ra
  * before  the grid of the views before, in the same memory: what lightbin_copy_grid() made of view 0, and this function
  *         of all later ones
  *
- * Errors, after which nothing was written: the grids have different numbers of tiles or slices, or ids of different
- * widths; `before` is in other memory; all views together have more cells or entries than 32 bits count; memory that is
- * too small. */
+ * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
+ * LIGHTBIN_OTHER_MEMORY, that of `before`; LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_ENTRIES, of all views, more
+ * than 32 bits count; LIGHTBIN_RANGE_BUFFER_TOO_SMALL and LIGHTBIN_ID_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* before,
                                                   lightbin_range* ranges, uint64_t range_capacity, void* ids,
                                                   uint64_t id_capacity);
@@ -690,8 +696,8 @@ LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
  *
  * first, second  grids of the same lights, with ids of the same width. Neither may be what this grid_union made
  *
- * Errors: grids with different numbers of tiles or slices, or ids of different widths; grids with z-bins; more than
- * 2^32 - 1 entries. */
+ * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
+ * LIGHTBIN_IDS_ARE_RANKS, grids with z-bins; LIGHTBIN_TOO_MANY_ENTRIES, more than 2^32 - 1. */
 LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
                                                   const lightbin_grid* second, lightbin_grid* grid);
 
@@ -722,7 +728,7 @@ typedef struct lightbin_cut {
  * limited    may be `grid`, which then is overwritten
  * cut        what was left out; null: is not wanted. Its array is valid as long as *limited
  *
- * Errors: fewer weights than lights; a grid that this budget made. */
+ * Errors: LIGHTBIN_TOO_FEW_WEIGHTS, fewer than lights; LIGHTBIN_OVERLAP, a grid that this budget made. */
 #define LIGHTBIN_NO_LIMIT 0xffffffffu
 LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid,
                                                  const float* weights, size_t weight_count, uint32_t per_cell,
@@ -730,8 +736,8 @@ LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const 
                                                  lightbin_cut* cut);
 
 /* Writes to `entries` in how many cells each light is listed, by its id as lightbin_lights numbers it, with
- * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors: fewer elements than grid->lights.
- */
+ * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors:
+ * LIGHTBIN_LIGHT_BUFFER_TOO_SMALL, fewer elements than grid->lights. */
 LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries,
                                                     size_t capacity, uint32_t* listed);
 
@@ -742,7 +748,8 @@ typedef struct lightbin_kind_range {
 } lightbin_kind_range;
 
 /* Writes a lightbin_kind_range for each range of a grid, so that a shader has a loop for each kind and asks no light
- * for its kind. Errors: a grid with z-bins; fewer elements than grid->range_count. */
+ * for its kind. Errors: LIGHTBIN_KINDS_OF_RANKS, a grid with z-bins; LIGHTBIN_RANGE_BUFFER_TOO_SMALL, fewer elements
+ * than grid->range_count. */
 LIGHTBIN_API lightbin_result lightbin_split_kinds(const lightbin_grid* grid, lightbin_kind_range* kinds,
                                                   uint64_t capacity);
 
@@ -783,8 +790,8 @@ LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* forma
 
 /* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
  * grid->ranges still index. Every list is complete, except that the sentinel format cuts lists that are longer than its
- * capacity and counts what it cut. Errors: a format without its capacity or max_lights; an id that is too large for the
- * format; memory that is too small. */
+ * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN and LIGHTBIN_MAX_LIGHTS_UNKNOWN, of the format;
+ * LIGHTBIN_IDS_TOO_NARROW, an id or max_lights is too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format,
                                              void* out, uint64_t out_bytes, lightbin_encoded* encoded);
 
@@ -855,9 +862,13 @@ typedef struct lightbin_shader lightbin_shader;
  *
  * then loops over the lights of a pixel. docs/opengl.md, vulkan.md, direct3d.md and webgpu.md have whole shaders, and
  * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
- * with lightbin_shader_destroy(). Errors: LIGHTBIN_CAPACITY_UNKNOWN to LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_KINDS_OF_RANKS,
- * LIGHTBIN_KINDS_WITHOUT_TABLE and LIGHTBIN_VIEWS_OUT_OF_RANGE, which name the option that the language, the lists or
- * the device do not allow. */
+ * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
+ * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
+ * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
+ * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_MAX_LIGHTS_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
+ * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_KINDS_OF_RANKS,
+ * LIGHTBIN_KINDS_WITHOUT_TABLE; LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS,
+ * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
                                                      const lightbin_allocator* allocator,
                                                      lightbin_shader** shader);
@@ -920,8 +931,8 @@ typedef struct lightbin_view_constants {
 LIGHTBIN_API lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
                                                   lightbin_view_constants* constants);
 
-/* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors: memory that is too
- * small. */
+/* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors:
+ * LIGHTBIN_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slices, uint32_t* words,
                                                     size_t capacity);
 
@@ -948,7 +959,9 @@ typedef struct lightbin_reduce_options {
 } lightbin_reduce_options;
 
 /* On success *shader is to be freed with lightbin_shader_destroy(). Errors name the option that the language or the
- * device does not allow. */
+ * device does not allow: LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_MULTISAMPLE_TEXTURES,
+ * LIGHTBIN_SAMPLES_OUT_OF_RANGE, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS,
+ * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
                                                     const lightbin_allocator* allocator,
                                                     lightbin_shader** shader);
@@ -1030,7 +1043,9 @@ typedef struct lightbin_cull_options {
  * there is room for, the list of the first tile that does not fit is cut, and the lists after it are empty;
  * lightbin_cull_totals has the number that was needed.
  *
- * Errors name the option that the language or the device does not allow. */
+ * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
+ * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER,
+ * LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                                   const lightbin_allocator* allocator,
                                                   lightbin_shader** shader);
@@ -1078,8 +1093,10 @@ typedef struct lightbin_cull_totals {
  * lightbin_reduce_shader() writes them, and with BOX behind them what lightbin_shader_edges() writes. With clusters and
  * BOX, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges().
  *
- * Errors: those of lightbin_cull_shader(); the matrix is not close enough to a rotation with a uniform scale; more than
- * 65,535 slices or 1,024 z-bins; too many lights for the ids; `scratch` would have more than 2^32 - 1 words. */
+ * Errors: those of lightbin_cull_shader(); LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
+ * LIGHTBIN_VIEW_MATRIX_DISTORTS, it is not close enough to a rotation with a uniform scale; LIGHTBIN_TOO_MANY_SLICES,
+ * more than 65,535, or 1,024 z-bins; LIGHTBIN_TOO_MANY_LIGHTS for the ids; LIGHTBIN_SCRATCH_TOO_LARGE, more than
+ * 2^32 - 1 words; LIGHTBIN_NOT_READ, slices or a matrix that the options do not read. */
 LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
                                                 const lightbin_cull_options* options, uint32_t lights,
                                                 uint32_t entries, const lightbin_slices* slices,

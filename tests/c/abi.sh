@@ -38,6 +38,38 @@ if [ "${2-}" = write ]; then
 else
     diff "$here/abi.txt" "$work/abi.txt"
 fi
+
+# Errors that a call of contract.c is refused with are among those that the comment of its function lists, or that the
+# header's conventions give to all functions; and every error is listed somewhere.
+python3 - "$header" "$here/contract.c" <<'END'
+import re, sys
+header, contract = (open(name).read() for name in sys.argv[1:])
+names = re.findall(r"(LIGHTBIN_\w+) *=", re.search(r"typedef enum lightbin_error \{(.*?)\}", header, re.S).group(1))
+def named(text):
+    found = {name for name in re.findall(r"LIGHTBIN_\w+", text) if name in names}
+    for first, last in re.findall(r"(LIGHTBIN_\w+) to\s+(?:\* )?(LIGHTBIN_\w+)", text):
+        found.update(names[names.index(first):names.index(last)])
+    return found
+of_all = named(header[:header.index("*/", header.index("Conventions that hold"))])
+listed, comment = {}, ""
+for text, function in re.findall(r"/\*(.*?)\*/|LIGHTBIN_API[^;]*?(lightbin_\w+)\(", header, re.S):
+    if function:
+        errors = comment.partition("Errors")[2]
+        others = re.findall(r"those of (lightbin_\w+)\(", errors)
+        listed[function] = named(errors).union(*(listed[other] for other in others))
+    else:
+        comment = text
+wrong = [name for name in names[1:-1] if name not in of_all.union(*listed.values())]
+calls = 0
+for check in re.findall(r"CHECK\((.*?)\);", contract, re.S):
+    call = re.search(r"(lightbin_\w+)\(.*?(?:==|\),)\s*(LIGHTBIN_\w+)", check, re.S)
+    if call and call.group(2) in names[1:]:
+        calls += 1
+        if call.group(2) not in of_all | listed[call.group(1)]: wrong.append(call.group(1) + ": " + call.group(2))
+assert calls > 100, calls
+assert not wrong, wrong
+END
+
 # Each function that the header declares is there.
 grep -o 'LIGHTBIN_API [^;]*lightbin_[a-z0-9_]*(' "$header" | grep -o 'lightbin_[a-z0-9_]*($' | tr -d '(' | LC_ALL=C sort >"$work/declared"
 sed -n 's/^function //p' "$work/abi.txt" | diff "$work/declared" -
