@@ -6,6 +6,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 source=$(cd "$here/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+export CMAKE_GENERATOR=Ninja
 flags="-O0"
 for part in SIMD SPOTS BOXES U16 SILHOUETTES INTERVAL BOX SPLIT_BOX CLUSTERS Z_BINS TRANSPARENCY BITS COVERAGE BUDGETS THREADS SHADERS ADVICE; do
     flags="$flags -DLIGHTBIN_NO_$part"
