@@ -64,7 +64,7 @@ import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 const folder = path.resolve(process.argv[2]), {load} = await import(pathToFileURL(`${folder}/node.js`));
 const {text} = await (await load()).shader(
-    {language: 'essl-300', storage: 'texture-2d', slicing: 'clusters', viewportCorner: true});
+    {language: 'essl-300', storage: 'texture-2d', slicing: 'clusters'});
 fs.writeFileSync(`${folder}/three_text.js`, `export const text = ${JSON.stringify(text)};\n`);
 END
 

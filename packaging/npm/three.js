@@ -3,8 +3,8 @@
 // materials.
 // three.d.ts describes what is exported.
 import {
-    DataTexture, FloatType, NearestFilter, RedIntegerFormat, RGBAFormat, RGIntegerFormat, ShaderChunk, UnsignedIntType,
-    Vector3, Vector4,
+    DataTexture, FloatType, Layers, NearestFilter, RedIntegerFormat, RGBAFormat, RGIntegerFormat, ShaderChunk,
+    UnsignedIntType, Vector3, Vector4,
 } from 'three';
 import {text} from './three_text.js';
 
@@ -15,6 +15,7 @@ const light_floats = 16, lights_per_row = 256, ids_per_row = 2048;
 
 const declarations = `${text}
 uniform highp sampler2D lightbin_lights;
+uniform highp vec4 lightbin_viewport;
 vec4 lightbin_texel( uint light, uint texel ) {
     return texelFetch( lightbin_lights, ivec2( light % ${lights_per_row}u * 4u + texel,
         light / ${lights_per_row}u ), 0 );
@@ -24,7 +25,8 @@ vec4 lightbin_texel( uint light, uint texel ) {
 // What three.js does for its own lights, in the same order.
 const loop = `
 #ifdef RE_Direct
-lightbin_for_each_light( lightbinAt, uvec2( gl_FragCoord.xy ), vViewPosition.z ) {
+lightbin_for_each_light( lightbinAt, uvec2( ( gl_FragCoord.xy - lightbin_viewport.xy ) * lightbin_viewport.zw ),
+    vViewPosition.z ) {
     vec4 lightbinPlace = lightbin_texel( lightbinAt.id, 0u ), lightbinColor = lightbin_texel( lightbinAt.id, 1u );
     vec4 lightbinCone = lightbin_texel( lightbinAt.id, 2u ), lightbinMore = lightbin_texel( lightbinAt.id, 3u );
     vec3 lightbinTo = lightbinPlace.xyz - geometryPosition;
@@ -42,97 +44,85 @@ lightbin_for_each_light( lightbinAt, uvec2( gl_FragCoord.xy ), vViewPosition.z )
 #endif
 `;
 
-const own_layers = Symbol('the mask of a light whose layers are empty for three.js');
-const taken_in = Symbol('the number of the update that last took the light');
+const hidden_by = Symbol('the ClusteredLights that hides a light from three.js');
 const patched_by = Symbol('the ClusteredLights that a material reads');
 
 let made = 0;  // how many ClusteredLights there were
 
-const is_lit = material => material.isMeshStandardMaterial || material.isMeshPhongMaterial
-    || material.isMeshLambertMaterial || material.isMeshToonMaterial;
+const is_taken = light => (light.isPointLight || light.isSpotLight) && !light.castShadow && !light.map;
+const is_lit = material => material?.isMeshStandardMaterial || material?.isMeshPhongMaterial
+    || material?.isMeshLambertMaterial || material?.isMeshToonMaterial;
+
+const formats = {  // of textures, with the channels
+    slices: [RedIntegerFormat, 'R32UI', 1], tiles: [RGIntegerFormat, 'RG32UI', 2], lists: [RedIntegerFormat, 'R32UI', 1],
+    lights: [RGBAFormat, 'RGBA32F', 4],
+};
+
+// A picture of one pixel: its only tile has the lists of all lights.
+const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
+                   clipDepth: 'minus-one-to-one', reversedZ: false};
+const no_pixel = new Uint32Array(4);
 
 export class ClusteredLights {
     #lightbin;
     #options;
     #binner;
     #view;
-    #slices;
-    #slices_of = '';
     #floats;
-    #taken = [];
+    #pictures = [];  // what materials read: of the outermost picture that is drawn, of one within it, and so on
+    #depth = 0;      // how many of these are being drawn
     #materials = new Set();
-    #updates = 0;
+    #warnings = new Set();
     #key = `lightbin ${++made}`;
     #viewport = new Vector4();
     #place = new Vector3();
     #target = new Vector3();
-    #uniforms = {
-        lightbin_grid: {value: new Uint32Array(4)}, lightbin_corner: {value: new Int32Array(2)},
-        lightbin_tiles: {value: null}, lightbin_lists: {value: null}, lightbin_slices: {value: null},
-        lightbin_lights: {value: null},
-    };
+    #uniforms = {};
 
     constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = 'box', footprint = 'rectangle',
-                           ...others} = {}) {
+                           cutoff = 0, ...others} = {}) {
         for (const key in others)
-            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint`);
+            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint, cutoff`);
+        if (!(cutoff >= 0)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
         this.#lightbin = lightbin;
-        this.#options = {tileSize, slices, firstSlice};
+        this.#options = {slices, firstSlice, cutoff};
         this.#binner = lightbin.binner({slicing: 'clusters', depthTest, footprint});
+        this.#view = lightbin.view({...one_pixel, tileSize});
+        lightbin.linearSlices({count: slices, begin: 0, end: 1}).dispose();  // refuses a wrong number
         this.#floats = lightbin.floats(light_floats * lights_per_row);
         this.update = this.update.bind(this);
+        for (const name of ['grid', 'viewport', ...Object.keys(formats)])
+            this.#uniforms[`lightbin_${name}`] = Object.defineProperty({}, 'value', {get: () => this.#read(name)});
     }
 
     update(renderer, scene, camera) {
-        ++this.#updates;
-        const points = [], spots = [], before = this.#taken;
-        this.#taken = [];
-        this.#collect(scene, camera.layers.mask, points, spots);
-        for (const light of before) if (light[taken_in] !== this.#updates) this.#giveBack(light);
-
-        const count = points.length + spots.length, rows = Math.max(Math.ceil(count / lights_per_row), 1);
-        if (rows * lights_per_row * light_floats > this.#floats.length)
-            this.#floats.resize(2 * rows * lights_per_row * light_floats);
-        const {elements} = camera.matrixWorldInverse;
-        points.forEach((light, i) => this.#write(light, i, camera));
-        spots.forEach((light, i) => this.#write(light, points.length + i, camera, elements));
-
-        renderer.getCurrentViewport(this.#viewport);
-        const {x, y, z: width, w: height} = this.#viewport;
-        const projection = {projection: camera.projectionMatrix.elements, width, height,
-                            clipDepth: camera.reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
-                            reversedZ: camera.reversedDepth === true};
-        if (this.#view === undefined)
-            this.#view = this.#lightbin.view({...projection, tileSize: this.#options.tileSize});
-        else
-            this.#view.update(projection);
-        this.#slice(renderer);
-
-        const {array} = this.#floats, end = light_floats * points.length;
-        const grid = this.grid = this.#binner.bin(this.#view, {
-            spheres: {array, stride: light_floats, count: points.length},
-            spots: {array: array.subarray(end), stride: light_floats, count: spots.length, axis: 8, cosine: 11},
-        }, {slices: this.#slices});
-
-        const uniforms = this.#uniforms, {tilesX, tilesY} = grid;
-        const constants = this.#view.shaderGrid(x, y);
-        uniforms.lightbin_grid.value = constants.subarray(0, 4);
-        uniforms.lightbin_corner.value = new Int32Array(constants.buffer, 16, 2);
-        // The whole rows of the texture are uploaded. What lies behind the ids in the module's memory is never read.
-        const id_rows = 2 ** Math.ceil(Math.log2(Math.max(grid.ids.length / ids_per_row, 1)));
-        this.#upload(renderer, uniforms.lightbin_tiles, grid.ranges, Math.max(tilesX, 1),
-            Math.max(tilesY * grid.slices, 1),
-                     RGIntegerFormat, 'RG32UI', 2);
-        this.#upload(renderer, uniforms.lightbin_lists, grid.ids, ids_per_row, id_rows, RedIntegerFormat, 'R32UI', 1);
-        this.#upload(renderer, uniforms.lightbin_lights, this.#floats.array, 4 * lights_per_row,
-                     this.#floats.length / (light_floats * lights_per_row), RGBAFormat, 'RGBA32F', 4);
+        if (this.#binner === undefined) return;  // after dispose()
+        const picture = this.#begin(renderer, scene), points = [], spots = [];
+        this.#patch(scene.overrideMaterial);
+        this.#collect(scene, camera, points, spots);
+        this.#write(points, spots, camera);
+        const {z: width, w: height} = renderer.getCurrentViewport(this.#viewport);
+        try {
+            if (camera.isArrayCamera) throw new Error('an ArrayCamera, as WebXR has, draws several pictures at once');
+            this.#bin(picture, points.length, spots.length, {
+                projection: camera.projectionMatrix.elements, width: Math.trunc(width), height: Math.trunc(height),
+                clipDepth: camera.reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
+                reversedZ: camera.reversedDepth === true});
+        } catch (error) {
+            this.#warn(error);
+            const {array} = this.#floats, count = points.length + spots.length;
+            for (let i = 0; i < count; ++i) array[light_floats * i + 3] = Infinity;
+            this.#bin(picture, count, 0, one_pixel);
+        }
     }
 
     dispose() {
-        this.#taken.forEach(light => this.#giveBack(light));
-        this.#taken = [];
-        for (const {value} of Object.values(this.#uniforms)) value?.dispose?.();
-        for (const made of [this.#binner, this.#view, this.#slices, this.#floats]) made?.dispose();
+        while (this.#depth > 0) this.#end();
+        for (const {slices, textures} of this.#pictures)
+            for (const made of [slices, ...Object.values(textures)]) made?.dispose();
+        this.#pictures = [];
+        for (const made of [this.#binner, this.#view, this.#floats]) made?.dispose();
+        this.#binner = undefined;
         for (const material of this.#materials) {
             material[patched_by]();
             delete material[patched_by];
@@ -141,104 +131,155 @@ export class ClusteredLights {
         this.#materials.clear();
     }
 
-    /// Finds the lights that are to be seen and take no part in three.js' own lighting, and the materials to patch.
-    #collect(object, layers, points, spots) {
+    /// Begins a picture, which another one may be waiting for. It ends with three.js' call of scene.onAfterRender, or if
+    /// an exception keeps three.js from that call, with the task.
+    #begin(renderer, scene) {
+        if (this.#depth === 0) queueMicrotask(() => { while (this.#depth > 0) this.#end(); });
+        const is_first = !this.#pictures.slice(0, this.#depth).some(outer => outer.scene === scene);
+        const picture = this.#pictures[this.#depth++] ??= {textures: {}}, {onAfterRender} = scene;
+        Object.assign(picture, {renderer, scene, giveBack: undefined});
+        if (is_first && scene.isScene) {
+            picture.giveBack = () => { scene.onAfterRender = onAfterRender; };
+            scene.onAfterRender = (...given) => {
+                this.#end();
+                onAfterRender.apply(scene, given);
+            };
+        }
+        return picture;
+    }
+
+    #end() { this.#pictures[--this.#depth].giveBack?.(); }
+
+    /// The value of a uniform for what three.js draws now.
+    #read(name) {
+        const {renderer, grid, textures} = this.#pictures[Math.max(this.#depth - 1, 0)];
+        if (name === 'grid') return this.#depth > 0 ? grid : no_pixel;
+        if (name !== 'viewport') return textures[name];
+        // Where the viewport begins, and the ratio of the lists' pixels to its own. This is 1 but for lists of one pixel,
+        // and for what lies behind glass: three.js draws that to a target of its own size. WebGL truncates fractions.
+        const {x, y, z, w} = renderer.getCurrentViewport(this.#viewport);
+        return this.#viewport.set(Math.trunc(x), Math.trunc(y), grid[2] / Math.trunc(z), grid[3] / Math.trunc(w));
+    }
+
+    #warn({code, message}) {
+        if (this.#warnings.has(code ?? message)) return;
+        this.#warnings.add(code ?? message);
+        console.warn(`lightbin draws with all lights where it can't make lists: ${message}`);
+    }
+
+    /// Finds the lights that the camera sees, and hides them from three.js; and patches the materials.
+    #collect(object, camera, points, spots) {
         if (!object.visible) return;
-        if (object.isLight) {
-            const is_point = object.isPointLight === true;
-            if (is_point || object.isSpotLight) {
-                if (object.castShadow || object.map) {
-                    if (object[own_layers] !== undefined) this.#giveBack(object);
-                } else {
-                    // The mask is empty unless the program has set it since.
-                    if (object.layers.mask !== 0) object[own_layers] = object.layers.mask;
-                    object.layers.mask = 0;
-                    object[taken_in] = this.#updates;
-                    this.#taken.push(object);
-                    if ((object[own_layers] & layers) !== 0) (is_point ? points : spots).push(object);
-                }
+        if (object.isLOD && object.autoUpdate) object.update(camera);  // as three.js does: it shows one of the children
+        this.#patch(object.material);
+        if (is_taken(object)) {
+            this.#hide(object);
+            if ((object.layers.mask & camera.layers.mask) !== 0) (object.isPointLight ? points : spots).push(object);
+        }
+        for (const child of object.children) this.#collect(child, camera, points, spots);
+    }
+
+    /// Makes a light's layers say that no camera sees it while a picture is drawn. Copies of the light don't have that,
+    /// as they copy the mask alone.
+    #hide(light) {
+        const {layers} = light;
+        if (layers[hidden_by] === this) return;
+        layers[hidden_by] = this;
+        layers.test = other => !(this.#depth > 0 && is_taken(light)) && Layers.prototype.test.call(layers, other);
+    }
+
+    #write(points, spots, {matrixWorldInverse}) {
+        const rows = Math.ceil((points.length + spots.length) / lights_per_row);
+        if (rows * lights_per_row * light_floats > this.#floats.length)
+            this.#floats.resize(2 * rows * lights_per_row * light_floats);
+        const {array} = this.#floats, place = this.#place;
+        [...points, ...spots].forEach((light, i) => {
+            const at = light_floats * i, {color, intensity, decay} = light, range = this.#range(light);
+            place.setFromMatrixPosition(light.matrixWorld);
+            if (light.isSpotLight) {
+                const axis = this.#target.setFromMatrixPosition(light.target.matrixWorld).sub(place)
+                    .transformDirection(matrixWorldInverse);
+                axis.toArray(array, at + 8);
+                array[at + 11] = Math.cos(light.angle);
+                array[at + 12] = Math.cos(light.angle * (1 - light.penumbra));
             }
-        } else if (object.material !== undefined) {
-            if (Array.isArray(object.material))
-                object.material.forEach(material => this.#patch(material));
-            else
-                this.#patch(object.material);
-        }
-        for (const child of object.children) this.#collect(child, layers, points, spots);
+            place.applyMatrix4(matrixWorldInverse).toArray(array, at);
+            array[at + 3] = range;
+            array[at + 4] = color.r * intensity;
+            array[at + 5] = color.g * intensity;
+            array[at + 6] = color.b * intensity;
+            array[at + 7] = decay;
+            array[at + 13] = range === Infinity ? 0 : range;
+            array[at + 14] = light.isSpotLight ? 1 : 0;
+        });
     }
 
-    #giveBack(light) {
-        if (light.layers.mask === 0 && light[own_layers] !== undefined) light.layers.mask = light[own_layers];
-        delete light[own_layers];
-        delete light[taken_in];
+    /// Where a light ends. Without an end, it has fallen to the cutoff there: color * intensity / range ** decay.
+    #range({color: {r, g, b}, intensity, distance, decay}) {
+        const {cutoff} = this.#options;
+        if (distance > 0) return distance;
+        if (cutoff === 0 || !(decay > 0)) return Infinity;
+        return this.#lightbin.lightRange(Math.max(r, g, b) * intensity, cutoff) ** (2 / decay);
     }
 
-    #write(light, i, camera, view) {
-        const {array} = this.#floats, at = light_floats * i, {color, intensity, distance} = light;
-        const place = this.#place.setFromMatrixPosition(light.matrixWorld);
-        if (view !== undefined) {
-            const axis = this.#target.setFromMatrixPosition(light.target.matrixWorld).sub(place)
-                .transformDirection(camera.matrixWorldInverse);
-            array[at + 8] = axis.x;
-            array[at + 9] = axis.y;
-            array[at + 10] = axis.z;
-            array[at + 11] = Math.cos(light.angle);
-            array[at + 12] = Math.cos(light.angle * (1 - light.penumbra));
-        }
-        place.applyMatrix4(camera.matrixWorldInverse);
-        array[at] = place.x;
-        array[at + 1] = place.y;
-        array[at + 2] = place.z;
-        array[at + 3] = distance > 0 ? distance : Infinity;
-        array[at + 4] = color.r * intensity;
-        array[at + 5] = color.g * intensity;
-        array[at + 6] = color.b * intensity;
-        array[at + 7] = light.decay;
-        array[at + 13] = distance;
-        array[at + 14] = view !== undefined ? 1 : 0;
+    /// Makes the lists of point lights and of the spots that follow them, and uploads all that materials read.
+    #bin(picture, points, spots, projection) {
+        this.#view.update(projection);
+        this.#slice(picture);
+        const {array} = this.#floats, stride = light_floats;
+        const grid = this.grid = this.#binner.bin(this.#view, {
+            spheres: {array, stride, count: points},
+            spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
+        }, {slices: picture.slices});
+        const tile_rows = Math.max(grid.tilesY * grid.slices, 1);
+        const id_rows = 2 ** Math.ceil(Math.log2(Math.max(grid.ids.length / ids_per_row, 1)));
+        if (Math.max(tile_rows, id_rows) > picture.renderer.capabilities?.maxTextureSize)
+            throw new Error('the clusters or the lists have more rows than a texture of this device');
+        picture.grid = this.#view.shaderGrid().subarray(0, 4);
+        this.#upload(picture, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
+        this.#upload(picture, 'lists', grid.ids, ids_per_row, id_rows);
+        const floats = this.#floats.array;  // read anew, as the module's memory may have grown
+        this.#upload(picture, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
     }
 
-    /// Makes the slices again if the camera's planes have changed.
-    #slice(renderer) {
+    /// Makes a picture's slices again if the camera's planes are others.
+    #slice(picture) {
         const {nearDepth, farDepth, orthographic} = this.#view.info, {slices: count, firstSlice} = this.#options;
-        const key = `${nearDepth} ${farDepth} ${orthographic}`;
-        if (key === this.#slices_of) return;
+        const planes = `${nearDepth} ${farDepth} ${orthographic}`;
+        if (planes === picture.planes) return;
         const last = Math.min(farDepth, Math.max(nearDepth, 0.001) * 1e5);
         const first = Math.min(firstSlice ?? Math.sqrt(nearDepth * last) / 4, last / 2);
         const slices = orthographic ? this.#lightbin.linearSlices({count, begin: nearDepth, end: farDepth})
             : this.#lightbin.exponentialSlices({count, first: Math.max(first, nearDepth), last});
-        this.#slices?.dispose();
-        this.#slices = slices;
-        this.#slices_of = key;
+        picture.slices?.dispose();
+        Object.assign(picture, {slices, planes});
         const words = slices.shaderWords();
-        this.#upload(renderer, this.#uniforms.lightbin_slices, words, words.length, 1, RedIntegerFormat, 'R32UI', 1);
+        this.#upload(picture, 'slices', words, words.length, 1);
     }
 
-    /// Uploads now, while `data` is the module's memory, to a texture that is made again if its size has changed.
-    #upload(renderer, uniform, data, width, height, format, internalFormat, channels) {
-        let texture = uniform.value;
-        if (texture === null || texture.image.width !== width || texture.image.height !== height) {
+    /// Uploads now, while `data` is the module's memory, to a texture that is made again if its size has changed. Whole
+    /// rows are uploaded: what lies behind the ids in the module's memory is never read.
+    #upload({renderer, textures}, name, data, width, height) {
+        const [format, internalFormat, channels] = formats[name];
+        let texture = textures[name];
+        if (texture?.image.width !== width || texture.image.height !== height) {
             texture?.dispose();
-            texture = uniform.value = new DataTexture(null, width, height, format,
+            texture = textures[name] = new DataTexture(null, width, height, format,
                 internalFormat === 'RGBA32F' ? FloatType : UnsignedIntType);
             texture.internalFormat = internalFormat;
             texture.minFilter = texture.magFilter = NearestFilter;
         }
-        const length = width * height * channels;
-        if (data.length !== length) {
-            const whole = data.byteOffset + 4 * length <= data.buffer.byteLength;
-            const own = whole ? undefined : new data.constructor(length);
-            own?.set(data);
-            data = own ?? new data.constructor(data.buffer, data.byteOffset, length);
-        }
-        texture.image.data = data;
+        const {buffer, byteOffset, constructor: Numbers} = data, length = width * height * channels;
+        texture.image.data = byteOffset + 4 * length <= buffer.byteLength ? new Numbers(buffer, byteOffset, length)
+            : Numbers.from({length}, (_, i) => data[i]);
         texture.needsUpdate = true;
         renderer.initTexture(texture);
     }
 
     /// Makes a material of three.js read the lists, after what else the program does to its shader.
     #patch(material) {
-        if (material[patched_by] !== undefined || !is_lit(material)) return;
+        if (Array.isArray(material)) return material.forEach(each => this.#patch(each));
+        if (!is_lit(material) || material[patched_by] !== undefined) return;
         const {onBeforeCompile, customProgramCacheKey} = material, uniforms = this.#uniforms, key = this.#key;
         material.onBeforeCompile = function(shader, renderer) {
             onBeforeCompile.call(this, shader, renderer);

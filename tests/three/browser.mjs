@@ -18,7 +18,7 @@ export async function open() {
     page.setDefaultTimeout(240000);
     page.on('pageerror', error => complaints.push(error.stack));
     page.on('console', message => {
-        if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text()))
+        if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels|404/.test(message.text()))
             complaints.push(message.text());
     });
     await page.goto(`${server.url}page.html#still`);

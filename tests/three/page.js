@@ -128,6 +128,10 @@ class Stage {
 
     draw(camera = this.camera) {
         renderer.render(this.scene, camera);
+        return this.pixels();
+    }
+
+    pixels() {
         const gl = renderer.getContext(), {drawingBufferWidth: width, drawingBufferHeight: height} = gl;
         const pixels = new Uint8Array(4 * width * height);
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
@@ -138,13 +142,16 @@ class Stage {
 /// How two pictures differ: the greatest difference of a byte, how many bytes differ, and how bright the first one is.
 export function difference(a, b) {
     let most = 0, bytes = 0, sum = 0;
+    const wrong = new Set();
     for (let i = 0; i < a.length; ++i) {
         const apart = Math.abs(a[i] - b[i]);
         most = Math.max(most, apart);
         bytes += apart !== 0 ? 1 : 0;
+        if (apart > 1) wrong.add(i >> 2);
         if (i % 4 !== 3) sum += a[i];
     }
-    return {most, bytes, mean: sum / (a.length * 3 / 4), length: a.length - b.length};
+    return {most, bytes, mean: sum / (a.length * 3 / 4), length: a.length - b.length, pixels: a.length / 4,
+            wrong: wrong.size};
 }
 
 const stage = new Stage();
