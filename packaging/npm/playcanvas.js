@@ -3,7 +3,7 @@
 // playcanvas.d.ts describes what is exported.
 import {
     LIGHTTYPE_SPOT, PIXELFORMAT_R32U, PIXELFORMAT_RGBA32F, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL,
-    ShaderChunks, WorldClusters,
+    ShaderChunks, Vec3, WorldClusters,
 } from 'playcanvas';
 
 // PlayCanvas has one light in each row of its texture of lights, which limits their number. Here a row has this many.
@@ -68,6 +68,7 @@ export class ClusteredLights {
     #edges = [];
     #floats;
     #texels;  // of a light in PlayCanvas' texture
+    #warnings = new Set();
 
     constructor(lightbin, app, {depthTest = 'no-depth-test', ...others} = {}) {
         for (const key in others) throw new Error(`options: there is no '${key}', but depthTest`);
@@ -109,10 +110,32 @@ export class ClusteredLights {
         clusters.collectLights(lights);
         this.#leaveOut(clusters.usedLights);
         clusters.evaluateBounds();
-        const points = this.#sort(clusters.usedLights), margin = this.#align(clusters);
-        this.#write(clusters, points, margin);
-        this.grid = this.#bin(clusters, points);
-        this.#upload(clusters, this.grid, params.debugLayer);
+        const points = this.#sort(clusters.usedLights), make = (points, margin) => {
+            this.#write(clusters, points, margin);
+            this.grid = this.#bin(clusters, points);
+            this.#upload(clusters, this.grid, params.debugLayer);
+        };
+        try {
+            make(points, this.#align(clusters));
+        } catch (error) {
+            make(clusters.usedLights.length - 1, this.#unite(clusters));
+            this.#warn(error);
+        }
+    }
+
+    #warn({code, message}) {
+        if (this.#warnings.has(code ?? message)) return;
+        this.#warnings.add(code ?? message);
+        console.warn(`lightbin lists all lights in one cell where it can't make scene.lighting.cells: ${message}`);
+    }
+
+    /// Makes one cell of all that is drawn. With the infinite margin it lists all lights.
+    #unite(clusters) {
+        clusters.cells = Vec3.ONE;
+        clusters.boundsMin.set(-1e18, -1e18, -1e18);
+        clusters.boundsDelta.set(2e18, 2e18, 2e18);
+        this.#look([-1e18, 1e18, 1, -1e18, 1e18, 1, -1e18, 1e18, 1]);
+        return Infinity;
     }
 
     /// Leaves out the lights whose place or range is no number, which would leave no bounds to the others.
@@ -178,8 +201,9 @@ export class ClusteredLights {
             this.#view = this.#lightbin.view(options);
         else
             this.#view.update(options);
+        const slices = this.#lightbin.linearSlices({count, begin, end});
         this.#slices?.dispose();
-        this.#slices = this.#lightbin.linearSlices({count, begin, end});
+        this.#slices = slices;
         this.#edges = edges;
     }
 
@@ -251,8 +275,9 @@ export class ClusteredLights {
 
 /// A texture of at least this many rows, and at most twice as many: the one that there is, or else another.
 function fit(texture, buffer, format, width, rows) {
-    const {height} = texture;
+    const {height} = texture, {maxTextureSize} = buffer.device;
+    if (rows > maxTextureSize) throw new Error('the cells and their lists do not fit into a texture of this device');
     if (texture.format === format && texture.width === width && height >= rows && height <= 2 * rows) return texture;
     texture.destroy();
-    return buffer.createTexture(buffer.device, width, rows + (rows >> 2), format, 'lightbin');
+    return buffer.createTexture(buffer.device, width, Math.min(rows + (rows >> 2), maxTextureSize), format, 'lightbin');
 }

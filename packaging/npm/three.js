@@ -53,43 +53,41 @@ const is_taken = light => (light.isPointLight || light.isSpotLight) && !light.ca
 const is_lit = material => material?.isMeshStandardMaterial || material?.isMeshPhongMaterial
     || material?.isMeshLambertMaterial || material?.isMeshToonMaterial;
 
-const formats = {  // of textures, with the channels
-    slices: [RedIntegerFormat, 'R32UI', 1], tiles: [RGIntegerFormat, 'RG32UI', 2], lists: [RedIntegerFormat, 'R32UI', 1],
-    lights: [RGBAFormat, 'RGBA32F', 4],
+// Of the textures, each with its number of channels.
+const formats = {
+    slices: [RedIntegerFormat, 'R32UI', 1], tiles: [RGIntegerFormat, 'RG32UI', 2],
+    lists: [RedIntegerFormat, 'R32UI', 1], lights: [RGBAFormat, 'RGBA32F', 4],
 };
 
-// A picture of one pixel: its only tile has the lists of all lights.
+// Of a picture whose only tile lists all lights.
 const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
                    clipDepth: 'minus-one-to-one', reversedZ: false};
 const no_pixel = new Uint32Array(4);
+const place = new Vector3(), axis = new Vector3(), viewport = new Vector4();
 
 export class ClusteredLights {
     #lightbin;
     #options;
     #binner;
     #view;
-    #floats;
-    #pictures = [];  // what materials read: of the outermost picture that is drawn, of one within it, and so on
-    #depth = 0;      // how many of these are being drawn
+    #pictures = [];  // what materials read: in a picture, in a picture that is drawn within it, and so on
+    #depth = 0;      // how many pictures are being drawn
     #materials = new Set();
     #warnings = new Set();
     #key = `lightbin ${++made}`;
-    #viewport = new Vector4();
-    #place = new Vector3();
-    #target = new Vector3();
     #uniforms = {};
 
     constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = 'box', footprint = 'rectangle',
                            cutoff = 0, ...others} = {}) {
         for (const key in others)
-            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint, cutoff`);
-        if (!(cutoff >= 0)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
+            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint, `
+                + 'cutoff');
+        if (!(cutoff >= 0 && cutoff < Infinity)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
         this.#lightbin = lightbin;
         this.#options = {slices, firstSlice, cutoff};
         this.#binner = lightbin.binner({slicing: 'clusters', depthTest, footprint});
         this.#view = lightbin.view({...one_pixel, tileSize});
         lightbin.linearSlices({count: slices, begin: 0, end: 1}).dispose();  // refuses a wrong number
-        this.#floats = lightbin.floats(light_floats * lights_per_row);
         this.update = this.update.bind(this);
         for (const name of ['grid', 'viewport', ...Object.keys(formats)])
             this.#uniforms[`lightbin_${name}`] = Object.defineProperty({}, 'value', {get: () => this.#read(name)});
@@ -100,29 +98,30 @@ export class ClusteredLights {
         const picture = this.#begin(renderer, scene), points = [], spots = [];
         this.#patch(scene.overrideMaterial);
         this.#collect(scene, camera, points, spots);
-        this.#write(points, spots, camera);
-        const {z: width, w: height} = renderer.getCurrentViewport(this.#viewport);
+        this.#write(picture, points, spots, camera);
+        renderer.getCurrentViewport(viewport);
         try {
             if (camera.isArrayCamera) throw new Error('an ArrayCamera, as WebXR has, draws several pictures at once');
             this.#bin(picture, points.length, spots.length, {
-                projection: camera.projectionMatrix.elements, width: Math.trunc(width), height: Math.trunc(height),
-                clipDepth: camera.reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
+                projection: camera.projectionMatrix.elements, width: Math.trunc(viewport.z),
+                height: Math.trunc(viewport.w), clipDepth: camera.reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
                 reversedZ: camera.reversedDepth === true});
         } catch (error) {
-            this.#warn(error);
-            const {array} = this.#floats, count = points.length + spots.length;
+            const {array} = picture.floats, count = points.length + spots.length;
             for (let i = 0; i < count; ++i) array[light_floats * i + 3] = Infinity;
             this.#bin(picture, count, 0, one_pixel);
+            this.#warn(error);
         }
     }
 
     dispose() {
         while (this.#depth > 0) this.#end();
-        for (const {slices, textures} of this.#pictures)
-            for (const made of [slices, ...Object.values(textures)]) made?.dispose();
+        for (const {floats, slices, textures} of this.#pictures)
+            for (const made of [floats, slices, ...Object.values(textures)]) made?.dispose();
         this.#pictures = [];
-        for (const made of [this.#binner, this.#view, this.#floats]) made?.dispose();
+        this.#binner?.dispose();
         this.#binner = undefined;
+        this.#view.dispose();
         for (const material of this.#materials) {
             material[patched_by]();
             delete material[patched_by];
@@ -131,14 +130,16 @@ export class ClusteredLights {
         this.#materials.clear();
     }
 
-    /// Begins a picture, which another one may be waiting for. It ends with three.js' call of scene.onAfterRender, or if
-    /// an exception keeps three.js from that call, with the task.
+    /// Begins a picture, perhaps within another one. It ends when three.js calls scene.onAfterRender, or with the task
+    /// if an exception has kept three.js from that.
     #begin(renderer, scene) {
         if (this.#depth === 0) queueMicrotask(() => { while (this.#depth > 0) this.#end(); });
-        const is_first = !this.#pictures.slice(0, this.#depth).some(outer => outer.scene === scene);
-        const picture = this.#pictures[this.#depth++] ??= {textures: {}}, {onAfterRender} = scene;
+        const outer = this.#pictures.slice(0, this.#depth), {onAfterRender} = scene;
+        const picture = this.#pictures[this.#depth] ??= {
+            floats: this.#lightbin.floats(light_floats * lights_per_row), textures: {}};
+        ++this.#depth;
         Object.assign(picture, {renderer, scene, giveBack: undefined});
-        if (is_first && scene.isScene) {
+        if (scene.isScene && !outer.some(picture => picture.scene === scene)) {
             picture.giveBack = () => { scene.onAfterRender = onAfterRender; };
             scene.onAfterRender = (...given) => {
                 this.#end();
@@ -155,10 +156,11 @@ export class ClusteredLights {
         const {renderer, grid, textures} = this.#pictures[Math.max(this.#depth - 1, 0)];
         if (name === 'grid') return this.#depth > 0 ? grid : no_pixel;
         if (name !== 'viewport') return textures[name];
-        // Where the viewport begins, and the ratio of the lists' pixels to its own. This is 1 but for lists of one pixel,
-        // and for what lies behind glass: three.js draws that to a target of its own size. WebGL truncates fractions.
-        const {x, y, z, w} = renderer.getCurrentViewport(this.#viewport);
-        return this.#viewport.set(Math.trunc(x), Math.trunc(y), grid[2] / Math.trunc(z), grid[3] / Math.trunc(w));
+        // Where the viewport begins, in pixels, of which WebGL drops fractions; and how many pixels of the lists one of
+        // its pixels has: not 1 if the lists have one pixel, or while three.js draws what lies behind glass, which it
+        // does to a smaller target.
+        const {x, y, z, w} = renderer.getCurrentViewport(viewport);
+        return viewport.set(Math.trunc(x), Math.trunc(y), grid[2] / Math.trunc(z), grid[3] / Math.trunc(w));
     }
 
     #warn({code, message}) {
@@ -167,10 +169,11 @@ export class ClusteredLights {
         console.warn(`lightbin draws with all lights where it can't make lists: ${message}`);
     }
 
-    /// Finds the lights that the camera sees, and hides them from three.js; and patches the materials.
+    /// Finds the lights that the camera sees, hides them from three.js, and patches the materials.
     #collect(object, camera, points, spots) {
         if (!object.visible) return;
-        if (object.isLOD && object.autoUpdate) object.update(camera);  // as three.js does: it shows one of the children
+        // Shows one of the children, as three.js does later.
+        if (object.isLOD && object.autoUpdate && object.layers.test(camera.layers)) object.update(camera);
         this.#patch(object.material);
         if (is_taken(object)) {
             this.#hide(object);
@@ -179,8 +182,8 @@ export class ClusteredLights {
         for (const child of object.children) this.#collect(child, camera, points, spots);
     }
 
-    /// Makes a light's layers say that no camera sees it while a picture is drawn. Copies of the light don't have that,
-    /// as they copy the mask alone.
+    /// Makes a light's layers say that no camera sees it, while pictures are drawn. clone() and toJSON() copy the mask
+    /// of the layers alone, so that copies are lights like any other.
     #hide(light) {
         const {layers} = light;
         if (layers[hidden_by] === this) return;
@@ -188,18 +191,17 @@ export class ClusteredLights {
         layers.test = other => !(this.#depth > 0 && is_taken(light)) && Layers.prototype.test.call(layers, other);
     }
 
-    #write(points, spots, {matrixWorldInverse}) {
+    #write({floats}, points, spots, {matrixWorldInverse}) {
         const rows = Math.ceil((points.length + spots.length) / lights_per_row);
-        if (rows * lights_per_row * light_floats > this.#floats.length)
-            this.#floats.resize(2 * rows * lights_per_row * light_floats);
-        const {array} = this.#floats, place = this.#place;
+        if (rows * lights_per_row * light_floats > floats.length)
+            floats.resize(2 * rows * lights_per_row * light_floats);
+        const {array} = floats;
         [...points, ...spots].forEach((light, i) => {
             const at = light_floats * i, {color, intensity, decay} = light, range = this.#range(light);
             place.setFromMatrixPosition(light.matrixWorld);
             if (light.isSpotLight) {
-                const axis = this.#target.setFromMatrixPosition(light.target.matrixWorld).sub(place)
-                    .transformDirection(matrixWorldInverse);
-                axis.toArray(array, at + 8);
+                axis.setFromMatrixPosition(light.target.matrixWorld).sub(place).transformDirection(matrixWorldInverse)
+                    .toArray(array, at + 8);
                 array[at + 11] = Math.cos(light.angle);
                 array[at + 12] = Math.cos(light.angle * (1 - light.penumbra));
             }
@@ -214,19 +216,19 @@ export class ClusteredLights {
         });
     }
 
-    /// Where a light ends. Without an end, it has fallen to the cutoff there: color * intensity / range ** decay.
+    /// Where a light ends. One without an end has fallen to the cutoff there: color * intensity / range ** decay.
     #range({color: {r, g, b}, intensity, distance, decay}) {
         const {cutoff} = this.#options;
         if (distance > 0) return distance;
         if (cutoff === 0 || !(decay > 0)) return Infinity;
-        return this.#lightbin.lightRange(Math.max(r, g, b) * intensity, cutoff) ** (2 / decay);
+        return this.#lightbin.lightRange(Math.abs(Math.max(r, g, b) * intensity), cutoff) ** (2 / decay);
     }
 
     /// Makes the lists of point lights and of the spots that follow them, and uploads all that materials read.
     #bin(picture, points, spots, projection) {
         this.#view.update(projection);
         this.#slice(picture);
-        const {array} = this.#floats, stride = light_floats;
+        const {array} = picture.floats, stride = light_floats;
         const grid = this.grid = this.#binner.bin(this.#view, {
             spheres: {array, stride, count: points},
             spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
@@ -238,7 +240,7 @@ export class ClusteredLights {
         picture.grid = this.#view.shaderGrid().subarray(0, 4);
         this.#upload(picture, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
         this.#upload(picture, 'lists', grid.ids, ids_per_row, id_rows);
-        const floats = this.#floats.array;  // read anew, as the module's memory may have grown
+        const floats = picture.floats.array;  // read anew, as the module's memory may have grown
         this.#upload(picture, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
     }
 

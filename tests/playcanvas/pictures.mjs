@@ -279,6 +279,34 @@ test("what is not a light in the world changes no other light; PlayCanvas' view 
     assert.ok(results.seen.pixels > 1000, 'the cells are to be seen');
 });
 
+test('where it can make no cells it lists all lights in one, says so once, and makes cells again', async () => {
+    const results = await page.evaluate(() => {
+        const {lists} = stages, {lighting} = lists.app.scene, results = {};
+        const cells = (...counts) => { lighting.cells = new pc.Vec3(...counts); };
+        lists.lights(30, 20, {range: 6});
+        cells(10, 3, 10);
+        const before = lists.draw();
+        for (const counts of [[0, 3, 10], [10, -1, 10], [40000, 1, 1], [1000, 100, 100]]) {
+            cells(...counts);
+            lists.draw();
+            results[counts] = difference(before, lists.draw());
+            cells(10, 3, 10);
+            results[`after ${counts}`] = difference(before, lists.draw());
+        }
+        results['an endless light'] = compare('own', 'lists', stage => {
+            if (stage !== lists) stage.lights(30, 20, {range: 6});
+            stage.app.scene.lighting.cells = new pc.Vec3(10, 3, 10);
+            stage.lamps[3].light.range = 1e30;
+        });
+        return results;
+    });
+    for (const [name, result] of Object.entries(results)) same(result, name, name === 'an endless light' ? 1 : 0);
+    const causes = [/NaN/, /at least 1 slice/, /40000/, /fit into a texture/, /2\^80/];
+    const warnings = browser.complaints.splice(0);
+    assert.equal(warnings.length, causes.length, `${warnings}`);
+    causes.forEach((cause, i) => assert.match(warnings[i], cause));
+});
+
 test('where PlayCanvas fails to write a light, the next frame is right', async () => {
     const {bytes, message} = await page.evaluate(() => {
         const {lists} = stages, [{lightsBuffer: buffer}] = lists.drawn, before = lists.draw();

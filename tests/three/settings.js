@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What makes three.js draw pictures within pictures, or to targets of other sizes than the canvas. Each setting changes
-// window.stage, and returns what takes that back and, if stage.draw() does not draw the picture, what does. Two frames
-// are drawn, or as many as it says.
+// window.stage, and returns what takes that back and, where it is not the default: what draws the picture (stage.draw),
+// how many frames (2), the options of ClusteredLights, and words of what the adapter warns of.
 import * as THREE from 'three';
 import {Reflector} from 'three/addons/objects/Reflector.js';
 import {Refractor} from 'three/addons/objects/Refractor.js';
@@ -11,7 +11,6 @@ import {OutputPass} from 'three/addons/postprocessing/OutputPass.js';
 import {RenderPass} from 'three/addons/postprocessing/RenderPass.js';
 
 const {camera, other, renderer, scene} = stage;
-const sizes = {textureWidth: 150, textureHeight: 100};
 const still = new THREE.DataTexture(new Uint8Array([128, 128, 255, 255]), 1, 1);
 still.needsUpdate = true;
 
@@ -29,9 +28,12 @@ function standing(object, x, y, z) {
     return add(object);
 }
 
-function lying(object) {
-    object.rotation.x = -Math.PI / 2;
-    return standing(object, 0, -4.7, 0);
+/// A mirror. Its camera's near plane lies in it.
+function mirror(Mirror, size, is_lying, ...place) {
+    const object = new Mirror(new THREE.PlaneGeometry(...size), {
+        textureWidth: 150, textureHeight: 100, waterNormals: still, sunColor: 0, waterColor: 0});
+    if (is_lying) object.rotation.x = -Math.PI / 2;
+    return {...standing(object, ...place), says: ['oblique']};
 }
 
 /// A screen that shows the scene from behind, and on that a screen with the outer camera's picture.
@@ -142,12 +144,11 @@ function copied(copy) {
 
 export const settings = {
     'pictures within pictures': nested,
-    'Reflector': () => standing(new Reflector(new THREE.PlaneGeometry(16, 8), sizes), 0, -1, -8),
+    'Reflector': () => mirror(Reflector, [16, 8], false, 0, -1, -8),
     'Reflector, orthographic': () => ({
-        ...lying(new Reflector(new THREE.PlaneGeometry(14, 14), sizes)), draw: () => stage.draw(other)}),
-    'Refractor': () => standing(new Refractor(new THREE.PlaneGeometry(12, 8), sizes), 1, 0, 5),
-    'Water': () => lying(new Water(new THREE.PlaneGeometry(14, 14), {
-        ...sizes, waterNormals: still, sunColor: 0, waterColor: 0})),
+        ...mirror(Reflector, [14, 14], true, 0, -4.7, 0), draw: () => stage.draw(other)}),
+    'Refractor': () => mirror(Refractor, [12, 8], false, 1, 0, 5),
+    'Water': () => mirror(Water, [14, 14], true, 0, -4.7, 0),
     'EffectComposer': () => composed(1, 200, 125),
     'EffectComposer, pixel ratio 1.25': () => composed(1.25, 162, 101),
     'EffectComposer, pixel ratio 1.5': () => composed(1.5, 161, 100),
@@ -165,6 +166,6 @@ export const settings = {
     'lights that were saved and loaded': () => copied(lamps => new THREE.ObjectLoader().parse(lamps.toJSON())),
     'lists of more rows than a texture has': () => {
         stage.resize(40, 400);
-        return {undo: () => {}, options: {tileSize: 1}};
+        return {undo: () => {}, options: {tileSize: 1}, says: ['more rows']};
     },
 };
