@@ -13,9 +13,9 @@ export interface ClusteredLightsOptions {
     depthTest?: 'no-depth-test' | 'box';
     footprint?: 'rectangle' | 'silhouette';
     /**
-     * Lights without an end (`distance` 0) are drawn as three.js draws them with this distance: where their strongest
-     * channel has fallen to the cutoff, (color * intensity / cutoff) ** (1 / decay). In lux, for intensities in candela.
-     * Default: 0, which leaves them without an end, and in every list.
+     * Lights without an end (`distance` 0) are drawn as three.js draws them with the distance at which their strongest
+     * channel has fallen to the cutoff: (color * intensity / cutoff) ** (1 / decay). In lux, for intensities in
+     * candela. Default: 0, which leaves them without an end, and in every list.
      */
     cutoff?: number;
 }
@@ -24,17 +24,17 @@ export interface ClusteredLightsOptions {
  * Lights three.js' own materials (MeshStandardMaterial, MeshPhysicalMaterial, and Phong, Lambert and Toon) by the point
  * and spot lights of a scene, in any number. Lights that cast shadows or have a map stay three.js' own.
  *
- * While a picture is drawn, `layers.test()` of the lights that are taken returns false, so that three.js passes them by.
- * A material reads the lists of the ClusteredLights that first met it. Where a program sets `onBeforeCompile`, it does
- * so before that.
+ * While a picture is drawn, `layers.test()` of the lights that are taken returns false, so that three.js passes them
+ * by. A material reads the lists of the ClusteredLights that first met it. Where a program sets `onBeforeCompile`, it
+ * does so before that.
  */
 export class ClusteredLights {
     constructor(lightbin: Lightbin, options?: ClusteredLightsOptions);
     /**
      * Begins a picture: makes the lists of a camera and uploads them. Matrices must be current:
-     * `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The picture ends when three.js
-     * calls `scene.onAfterRender`, for which it puts a function before the scene's own until then; at the latest, it ends
-     * with the task. Pictures within pictures have lists of their own.
+     * `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The picture ends when
+     * three.js calls `scene.onAfterRender`, which is wrapped until then, and at the latest with the task. Pictures
+     * within pictures have lists of their own.
      *
      * Where it can't make lists, it makes one list of all lights, and console.warn() says why, once for each cause.
      */
