@@ -136,6 +136,36 @@ TEST_CASE("bad boxes are skipped and counted") {
     CHECK(of_null->light_counts().rejected == 1);
 }
 
+TEST_CASE("a box reaches as deep as its numbers say, as far as floats do") {
+    constexpr float size = 3e38f;
+    const View view = *View::from_projection(glm::infinitePerspective(1.0f, 1.5f, 0.1f), {96, 64}, {.tile_size = 32});
+    const std::vector<Sphere> ball = {{0, 0, 0, size}};
+    const Box cube = {0, 0, 0, HUGE_VALF, 0, 0, 0, {{size, 0, 0}, {0, size, 0}, {0, 0, size}}};
+    const std::vector<Box> boxes = {cube, clipped_sphere(ball[0], cube)};
+    const float boundaries[] = {1e38f, 1.8e38f, 2.5e38f};
+    const Slices slices = *Slices::from_boundaries(boundaries);
+    const std::vector<float> min(view.tile_count(), 2e38f), max(view.tile_count(), 2.9e38f);
+    const auto check = [&]<Options options> {
+        Binner<options> of_boxes, of_ball;
+        const auto inputs = inputs_for<options>({.min = min, .max = max}, slices);
+        const auto grid = of_boxes.bin(view, boxes, inputs);
+        REQUIRE(grid);
+        CHECK(grid->ids().size() == 2 * of_ball.bin(view, ball, inputs)->ids().size());
+        CHECK(grid->ids().size() == 2 * grid->ranges().size());
+        for (const BinRange& bin : grid->ranks().bins)
+            CHECK((bin.least == 0 && bin.greatest == 1));
+        for (const LightCoverage& light : of_boxes.coverage()) {
+            CHECK(light.nearest <= -size);
+            CHECK(light.farthest >= size);
+        }
+    };
+    check.operator()<Options{.slicing = Slicing::clusters, .coverage = true}>();
+    check.operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .coverage = true}>();
+    check.operator()<Options{.slicing = Slicing::z_bins, .coverage = true}>();
+    check.operator()<Options{.depth_test = DepthTest::interval, .coverage = true}>();
+    check.operator()<Options{.depth_test = DepthTest::box, .coverage = true}>();
+}
+
 TEST_CASE("the functions that make boxes contain what they are named after, and no more than they must") {
     std::mt19937 random(9);
     std::uniform_real_distribution<float> unit(-1, 1);

@@ -304,6 +304,26 @@ TEST_CASE("the size in pixels of small, large and infinite spheres") {
     near_is(9, tangents(1e6, 999500));
 }
 
+TEST_CASE("a light in view has a size in pixels, however small it is") {
+    const View view = *View::from_projection(glm::infinitePerspective(1.0f, 1.5f, 0.1f), {480, 320});
+    const Box box = {0, 0, -9, 1, 0, 0, -9, {{0, 1e-42f, 0}, {0, 0, 0}, {0, 0, 0}}};
+    const std::vector<Sphere> spheres = {{0, 0, -9, 0}, {0, 0, -3e38f, 0}, {1, 2, -9, 1e-45f}};
+    const std::vector<Spot> spots = {{0, 0, -3e38f, 0, 0, 1, 0, 0.9f}, {1, 2, -9, 1e-45f, 0, 1, 0, 0.5f}};
+    const std::vector<Box> boxes = {box};
+    Binner<Options{.coverage = true}> binner;
+    for (const float scale : {1.0f, 1e-5f}) {  // the box's half axes are 0 in float once they are scaled
+        const glm::mat4 to_view = glm::scale(glm::mat4(1), glm::vec3(scale));
+        REQUIRE(binner.bin(view, lights(world_space(spheres, glm::mat4(1)), world_space(spots, glm::mat4(1)),
+                                        world_space(boxes, glm::translate(to_view, {0, 0, 9 - 9 / scale})))));
+        CHECK(binner.coverage().size() == 6);
+        for (const LightCoverage& light : binner.coverage()) {
+            CHECK(light.pixels > 0);
+            CHECK(light.pixels < 1);
+            CHECK(light.nearest <= light.farthest);
+        }
+    }
+}
+
 TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of its least sphere") {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;

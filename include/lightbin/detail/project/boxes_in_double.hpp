@@ -17,7 +17,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 inline void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball,
                                   const Box& given, std::uint32_t i, ProjectedChunk& chunk, ViewBox* to) {
-    constexpr double infinite = static_cast<double>(infinity), largest = static_cast<double>(FLT_MAX) * 0.5;
+    constexpr double infinite = static_cast<double>(infinity);
     const float signs[] = {camera.x.sign, camera.y.sign, camera.z_sign};
     double terms = 0;
     const auto transform = [&](const float(&from)[3], bool is_point, double(&image)[3]) {
@@ -62,13 +62,10 @@ inline void project_box_in_double(const Camera& camera, const WorldToView* to_vi
     chunk.visible |= std::uint64_t{visible} << i;
     if (to == nullptr) return;
 
-    // Depths are rounded outward to float: 2^-23 of a number is at least one unit in its last place, and 2^-120 is more
-    // than underflow takes. They are limited to half of what floats hold. Rounding a box to float moves each point by
-    // less than 2^-24 of the box's size, see ViewBox.
-    const auto slack_of = [](double depth) { return scalar::mul(abs_of(depth), 0x1p-23) + 0x1p-120; };
+    // Rounding a box to float moves each point by less than 2^-24 of the box's size, see ViewBox.
     to->ball = {ball.x, ball.y, ball.z, static_cast<float>(bounds.radius)};
-    to->nearest = static_cast<float>(max_of(bounds.nearest - slack_of(bounds.nearest), -largest));
-    to->farthest = static_cast<float>(min_of(bounds.farthest + slack_of(bounds.farthest), largest));
+    to->nearest = float_below(bounds.nearest);
+    to->farthest = float_above(bounds.farthest);
     to->taper = given.taper;
     to->tolerance = static_cast<float>(box.error + scalar::mul(view_size, 0x1p-19) + 0x1p-120);
     for (unsigned k = 0; k < 3; ++k) {

@@ -19,6 +19,10 @@ struct LightExtent {
     float nearest, farthest;
 };
 
+inline float enlarged(float radius, float by) {
+    return float_above(static_cast<double>(radius) + static_cast<double>(by));
+}
+
 /// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of least_sphere() or
 /// bounding_sphere(), enlarged by how far the light can reach outside of the spot or box that was rounded to float.
 template <LightKind kind> LightExtent extent_of(const Camera& camera, const ViewLights& lights, std::uint32_t id) {
@@ -34,15 +38,18 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
         const auto& light = lights.template shape<kind>(id);
         Sphere sphere = light.ball;
         if constexpr (kind == LightKind::box) {
-            Box box = {sphere.x,        sphere.y,        sphere.z, sphere.radius, light.centre[0],
-                       light.centre[1], light.centre[2], {},       light.taper};
-            copy_items(&light.half_axes[0][0], 9, &box.half_axes[0][0]);
-            sphere = bounding_sphere(box);
+            Box whole = {0, 0, 0, infinity, light.centre[0], light.centre[1], light.centre[2], {}, light.taper};
+            copy_items(&light.half_axes[0][0], 9, &whole.half_axes[0][0]);
+            Sphere corners = bounding_sphere(whole);
+            if (!(corners.radius > 0))  // in float, all half axes are 0
+                corners = {light.centre[0], light.centre[1], light.centre[2], 0};
+            corners.radius = enlarged(corners.radius, light.tolerance);
+            if (corners.radius < sphere.radius) sphere = corners;
         } else if (light.tolerance > 0) {
             sphere = least_sphere({sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z,
                                    light.cosine});
+            sphere.radius = enlarged(sphere.radius, light.tolerance);
         }
-        sphere.radius = float_above(static_cast<double>(sphere.radius) + static_cast<double>(light.tolerance));
         return {sphere, light.nearest, light.farthest};
     }
 }
