@@ -16,13 +16,23 @@ namespace detail {
 
 template <> inline constexpr bool kernels_included<LightKind::box> = true;
 
-/// A Box that is bad input: skipped and counted.
-inline constexpr Box bad_box = {0, 0, 0, -1, 0, 0, 0, {}};
+/// Returns a Box that is in no list, as unlit_sphere() returns a Sphere.
+inline Box unlit_box(double radius) {
+    return {0, 0, 0, unlit_sphere(radius).radius, 0, 0, 0, {}};
+}
+
+/// Contains all points whose coordinates are floats: for shapes that reach farther.
+inline constexpr Box endless_box = {0, 0, 0, infinity, 0, 0, 0, {{FLT_MAX, 0, 0}, {0, FLT_MAX, 0}, {0, 0, FLT_MAX}}};
+
+inline double size_of(const Triple& v) {
+    return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
+}
 
 /// Returns a box with these half axes, and the sphere of its own corners.
 inline Box box_with_own_sphere(const Triple& centre, const Triple (&half_axes)[3], double taper) {
-    for (const Triple& axis : half_axes)
-        if (!finite(axis)) return bad_box;
+    const double size = size_of(centre) + size_of(half_axes[0]) + size_of(half_axes[1]) + size_of(half_axes[2]);
+    if (!is_finite(size)) return unlit_box(0);
+    if (size > static_cast<double>(FLT_MAX)) return endless_box;
     Box box = {0,
                0,
                0,
@@ -57,11 +67,11 @@ inline Triple cross(const Triple& a, const Triple& b) {
 
 /// Returns a right-angled box that contains the box given in double, whose half axes have the direction `along` of
 /// length 1 and two directions at right angles to it. Its faces are moved outward by more than rounding to float
-/// moves them.
+/// moves them. A box that is not finite gives one that contains everything.
 inline Box right_angled_box(const Triple& centre, const Triple& along, double half_length, double half_width) {
+    const double size = size_of(centre) + half_length + 2 * half_width, margin = rounded(size * 0x1p-21) + 0x1p-120;
+    if (!(size <= static_cast<double>(FLT_MAX))) return endless_box;
     const Triple across = perpendicular(along), third = cross(along, across);
-    const double size = abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z) + half_length + 2 * half_width,
-                 margin = rounded(size * 0x1p-21) + 0x1p-120;
     const Triple half_axes[] = {scaled(across, half_width + margin), scaled(third, half_width + margin),
                                 scaled(along, half_length + margin)};
     return box_with_own_sphere(centre, half_axes, 1);
@@ -107,14 +117,13 @@ inline Box clipped_sphere(const Sphere& light, const Box& room) {
 
 /// Returns the half of a sphere that lies on one side of its centre, where an area light shines: a Box that contains
 /// the half sphere and exceeds it by at most 2^-19 of the sum of its radius and the sizes of the centre's
-/// coordinates.
+/// coordinates. A sphere that reaches beyond the range of floats, as with an infinite radius, is kept whole.
 ///
 /// direction  a type with members x, y and z: towards the half that is kept, of any length but zero
 template <class Direction> Box half_sphere(const Sphere& light, const Direction& direction) {
     const detail::Triple axis = detail::triple(direction);
     const double axis_length = detail::length(axis), radius = static_cast<double>(light.radius);
-    if (!(axis_length > 0) || !detail::is_finite(axis_length) || !detail::is_finite(light.radius))
-        return detail::bad_box;
+    if (!(axis_length > 0) || !detail::is_finite(axis_length)) return detail::unlit_box(radius);
     const detail::Triple along = detail::scaled(axis, 1 / axis_length);
     const detail::Triple middle =
         detail::sum({static_cast<double>(light.x), static_cast<double>(light.y), static_cast<double>(light.z)},
@@ -140,14 +149,13 @@ Box projector_box(const Point& eye, const Point& forward, const Point& half_x, c
 /// Returns a box and a sphere that contain all points within `radius` of the line segment from `a` to `b`, a tube with
 /// round ends. It is listed in fewer tiles than tube_sphere(a, b, radius), which is its sphere.
 ///
-/// a, b, radius  as for tube_sphere(), but both finite
+/// a, b, radius  as for tube_sphere()
 template <class Point> Box tube_box(const Point& a, const Point& b, float radius) {
     const detail::Triple from = detail::triple(a), to = detail::triple(b);
     const detail::Triple way = detail::sum(to, detail::scaled(from, -1));
     const double distance = detail::length(way), reach = static_cast<double>(radius);
-    const detail::Triple middle = detail::scaled(detail::sum(from, to), 0.5);
-    if (!detail::finite(middle) || !detail::is_finite(distance) || !(radius >= 0) || !detail::is_finite(radius))
-        return detail::bad_box;
+    const detail::Triple middle = detail::sum(detail::scaled(from, 0.5), detail::scaled(to, 0.5));
+    if (!detail::finite(from) || !detail::finite(to) || !(radius >= 0)) return detail::unlit_box(reach);
     const detail::Triple along = distance > 0 ? detail::scaled(way, 1 / distance) : detail::Triple{1, 0, 0};
     return clipped_sphere(detail::sphere_around_nearly(middle, 0.5 * distance + reach),
                           detail::right_angled_box(middle, along, 0.5 * distance + reach, reach));

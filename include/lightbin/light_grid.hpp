@@ -32,7 +32,7 @@ struct ListRange {
 struct LightCounts {
     std::uint32_t lights = 0;
     std::uint32_t rejected = 0;  ///< the number of lights left out as bad input: see Sphere, Spot and Box
-    std::uint32_t culled = 0;    ///< the number of lights left out as outside of the view
+    std::uint32_t culled = 0;    ///< the number of lights left out as outside of the view, or switched off (radius -1)
     /// Ids below `first_spot` are those of Spheres, from there to `first_box` those of Spots, others those of Boxes.
     std::uint32_t first_spot = 0xffffffff, first_box = 0xffffffff;
 };

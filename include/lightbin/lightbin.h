@@ -346,16 +346,18 @@ typedef struct lightbin_floats {
     size_t stride; /* bytes from one light's floats to the next light's: not less than these floats take */
 } lightbin_floats;
 
-/* Spheres outside of which lights give no light. A radius of +inf covers everything. A light with a NaN or infinite
- * centre, or a NaN or negative radius, is skipped and counted. */
+/* Spheres outside of which lights give no light. A radius of +inf covers everything. A light whose radius is -1 is
+ * switched off: it is in no list, and counts as culled. A light with a NaN or infinite centre, or a radius that is NaN
+ * or another negative number, is skipped and counted as rejected. Both hold for spots and boxes, too. */
 typedef struct lightbin_spheres {
     size_t count;
     lightbin_floats centre; /* 3 floats */
     lightbin_floats radius; /* 1 float */
 } lightbin_spheres;
 
-/* Spots: spheres that are cut by a cone whose tip is the centre. A spot whose axis is zero, or whose axis or cosine is
- * NaN, is skipped and counted, as bad spheres are. */
+/* Spots: spheres that are cut by a cone whose tip is the centre. A cosine of -1 makes a whole sphere, whatever the axis
+ * is. Other spots whose axis is zero or not finite, and spots whose cosine is NaN or not from 1 to -1, are skipped and
+ * counted, as bad spheres are. */
 typedef struct lightbin_spots {
     size_t count;
     lightbin_floats centre; /* 3 floats */
@@ -369,8 +371,8 @@ typedef struct lightbin_spots {
  *
  *     box_centre + a k u + b k v + c w     with a, b and c from -1 to 1, and k = (1 + taper + c (1 - taper)) / 2
  *
- * where u, v and w are its three half axes. A box whose numbers are NaN or infinite, whose radius is 0 or less, whose
- * taper is not from 0 to 1, or all of whose half axes are zero, is skipped and counted. (A radius may be +inf.) */
+ * where u, v and w are its three half axes. A box whose numbers are NaN or infinite, whose taper is not from 0 to 1, or
+ * all of whose half axes are zero, is skipped and counted, as bad spheres are. (A radius may be +inf.) */
 typedef struct lightbin_boxes {
     size_t count;
     /* 3 floats and 1 float: the sphere. Null in both: no sphere cuts the boxes, as if each radius were +inf. */
@@ -583,7 +585,7 @@ typedef struct lightbin_grid {
     uint64_t range_count, id_count;
     uint32_t id_bytes;
     uint32_t lights, rejected,
-        culled; /* how many lights were given, are bad input, and are outside of the view */
+        culled; /* how many lights were given, are bad input, and are outside of the view or switched off */
     /* With z-bins, else null: for each rank the light's id, and the ranks in each bin. */
     const uint32_t* order;
     const lightbin_bin_range* bins;
@@ -1229,7 +1231,8 @@ LIGHTBIN_API lightbin_result lightbin_whole_box(const float centre[3], const flo
 LIGHTBIN_API lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side,
                                                lightbin_box* box);
 
-/* Makes a box of the half of a sphere where an area light shines.
+/* Makes a box of the half of a sphere where an area light shines. A sphere that reaches beyond the range of floats, as
+ * with an infinite radius, is kept whole.
  *
  * direction  towards the half that is kept, of any length but zero */
 LIGHTBIN_API lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float direction[3],

@@ -27,7 +27,7 @@ template <class Light, class ToLight> struct Lights {
         if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
             if (!light) {
                 Made bad = {};
-                bad.radius = -1;
+                bad.radius = -detail::infinity;
                 return bad;
             }
         return static_cast<Made>(detail::make_light(to_light, light));

@@ -11,8 +11,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// The sphere outside of which a light gives no light: centre and radius, in the units of the space that the lights are
 /// given in. That is view space, which the projection matrix is applied to, or with world_space() world space.
 ///
-/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or negative
-/// radius, is bad input: it is skipped and counted, and all other lights are binned as usual.
+/// Radius 0 is a point; radius +inf covers everything. A light with the radius -1 is switched off: it is in no list,
+/// whatever its other numbers are. A light with a NaN or infinite centre, or a radius that is NaN or another negative
+/// number, is bad input: it is skipped and counted, and all other lights are binned as usual.
 struct Sphere {
     float x, y, z, radius;
 };
@@ -21,7 +22,8 @@ struct Sphere {
 ///
 /// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero
 /// cos_half_angle          cosine of the angle between the axis and the cone's side: 1 for a ray, 0 for a half sphere,
-///                         -1 for a whole sphere. glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
+///                         -1 for a whole sphere, whatever the axis. glTF: cos(outerConeAngle); Unity: cosine of half
+///                         the spotAngle.
 ///
 /// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding
 /// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
@@ -29,8 +31,8 @@ struct Sphere {
 ///
 /// With a half angle above 90 degrees a spot is listed where its convex hull reaches, its sphere cut off at the circle
 /// in which cone and sphere meet. With radius +inf, or a cosine of -0.75 or less, it is treated as its whole sphere.
-/// What is bad input in a Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero,
-/// and a cosine that is NaN or outside -1 to 1.
+/// What is bad input in a Sphere is so in a Spot, as are a cosine that is NaN or outside -1 to 1 and, unless the cosine
+/// is -1, an axis with a NaN or infinite coordinate or of length zero.
 struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;
@@ -54,8 +56,8 @@ struct Spot {
 /// The points of the box are  centre + a k half_axes[0] + b k half_axes[1] + c half_axes[2]  with a, b and c from -1
 /// to 1, and  k = (1 + taper + c (1 - taper)) / 2.
 ///
-/// A radius that is zero, negative or NaN is bad input, as are coordinates that are NaN or infinite, three half axes
-/// of zero, and a taper that is NaN or not from 0 to 1: such a Box is skipped and counted.
+/// What is bad input in a Sphere is so in a Box, as are coordinates that are NaN or infinite, three half axes of zero,
+/// and a taper that is NaN or not from 0 to 1.
 struct Box {
     float x, y, z, radius;
     float box_x, box_y, box_z;

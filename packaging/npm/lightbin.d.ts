@@ -113,13 +113,15 @@ interface Kind {
     array?: FloatArray;
     stride?: number;
 }
-/** Spheres outside of which lights give no light. The default is a stride of 4: x, y, z, radius. */
+/** Spheres outside of which lights give no light. The default is a stride of 4: x, y, z, radius. The radius -1 switches
+ * a light off, a spot or a box, too: it is in no list, and counts as culled. */
 export interface Spheres extends Kind {
     centre?: Attribute;
     /** Infinity: the light reaches everything. */
     radius?: Attribute;
 }
-/** Spheres that are cut by a cone from their centre. The default is a stride of 8: x, y, z, radius, axis, cosine. */
+/** Spheres that are cut by a cone from their centre. The default is a stride of 8: x, y, z, radius, axis, cosine. With
+ * the cosine -1 a spot is its whole sphere, whatever its axis is. */
 export interface Spots extends Spheres {
     /** 3 floats: the direction in which the light shines, of any length but zero. */
     axis?: Attribute;
@@ -186,7 +188,7 @@ export interface Inputs {
 }
 
 interface Counts {
-    /** How many lights were given, are bad input, and are outside of the view. */
+    /** How many lights were given, are bad input, and are outside of the view or switched off. */
     readonly lights: number, rejected: number, culled: number;
     /** With z-bins: for each rank the light's id, and two numbers for each bin, the least and greatest rank. */
     readonly order: Uint32Array, bins: Uint32Array;

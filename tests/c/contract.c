@@ -481,7 +481,7 @@ static void test_shapes(void) {
     CHECK(box.radius == 1 && box.box_centre[0] == 0.5f);
     CHECK(lightbin_projector_box(a, half_axes + 6, half_axes, half_axes + 3, 0.25, &box).error == LIGHTBIN_OK);
     CHECK(box.taper == 0.25f && box.box_centre[2] == -5 + 0.625f * 3);
-    CHECK(lightbin_tube_box(a, b, -1, &box).error == LIGHTBIN_OK && box.radius < 0); /* a bad light, no error */
+    CHECK(lightbin_tube_box(a, b, -2, &box).error == LIGHTBIN_OK && box.radius < 0); /* a bad light, no error */
 
     CHECK(refuses(lightbin_spot_sphere(NULL, &sphere), LIGHTBIN_NULL_ARGUMENT, "spot"));
     CHECK(refuses(lightbin_box_sphere(&box, NULL), LIGHTBIN_NULL_ARGUMENT, "sphere"));

@@ -22,7 +22,10 @@ inline bool is_bad(const BoxLight& b) {
         for (const float v : b.half_axes[i])
             finite = finite && std::isfinite(v), sized = sized || v != 0;
     }
-    return !finite || !sized || !(b.radius > 0) || !(b.taper >= 0) || !(b.taper <= 1);
+    return !finite || !sized || !(b.radius >= 0) || !(b.taper >= 0) || !(b.taper <= 1);
+}
+inline bool is_off(const BoxLight& b) {
+    return b.radius == -1;
 }
 
 inline std::string text(const BoxLight& b) {

@@ -18,7 +18,7 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
         const std::vector<Light> lights = make(set, camera, lights_a_set, ++seed);
         const auto grid = binner.bin(view, lights);
         REQUIRE(grid.has_value());
-        CHECK(grid->light_counts().rejected == std::count_if(lights.begin(), lights.end(), is_bad));
+        CHECK(grid->light_counts().rejected == rejected_of(lights));
         const auto small = small_binner.bin(view, lights);
         REQUIRE(small.has_value());
         CHECK(std::equal(grid->ids().begin(), grid->ids().end(), small->ids().begin(), small->ids().end()));

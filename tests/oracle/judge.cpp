@@ -75,7 +75,7 @@ public:
 
     void examine(Rung rung, const Lists& lists, Verdicts& verdicts) {
         rung_ = rung;
-        const auto bad = std::count_if(scene_.lights.begin(), scene_.lights.end(), is_bad);
+        const std::uint32_t bad = rejected_of(scene_.lights);
         if (lists.rejected != bad)
             complain(verdicts,
                      "rejected " + std::to_string(lists.rejected) + " of " + std::to_string(bad) + " bad");

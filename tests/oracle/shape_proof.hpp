@@ -9,7 +9,7 @@
 // LIGHTBIN_ROUNDS=N asks N times as much, each time of other lights, and says how far it is: the campaign does.
 //
 // A Kind has
-//   Light              a light as the sets make it; is_bad(Light) and text(Light) are known
+//   Light              a light as the sets make it; is_bad(Light), is_off(Light) and text(Light) are known
 //   Tally              a ShapeTally and what the Shapes count
 //   Shapes             constructed from an Examiner, lights, a const ViewMatrix* or nullptr, and a Tally&. Its
 //                      meets(light, tiles, depths, planes) decides whether a light meets a block of tiles between two
@@ -188,8 +188,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
             return binner.bin(view, lights, lightbin::inputs_for<options>(given, slices));
         });
         REQUIRE(grid.has_value());
-        CHECK(grid->light_counts().rejected == std::count_if(subjects.lights.begin(), subjects.lights.end(),
-                                                             [](const auto& light) { return is_bad(light); }));
+        CHECK(grid->light_counts().rejected == rejected_of(subjects.lights));
         if constexpr (whole_rectangles) {
             const std::vector<Emitted> emitted = emitted_tiles(*grid, count);
             for (std::size_t i = 0; i < count; ++i) {

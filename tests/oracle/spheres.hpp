@@ -342,7 +342,7 @@ inline Light special(const Aim& aim, Random& random) {
         light.w = -light.w;
         break;  // bad unless 0
     case 3:
-        light.w = random.chance(0.5) ? nan : -inf;
+        light.w = random.chance(0.5) ? nan : random.chance(0.5) ? -inf : -1;
         break;
     case 4:
         light.x = nan;
@@ -405,9 +405,19 @@ auto make(const Set& set, const Camera& camera, std::size_t count, std::uint64_t
     return lights;
 }
 
-/// Bad input: to be skipped and counted.
+/// In no list: bad input, or switched off.
 inline bool is_bad(const Light& light) {
     return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.w >= 0);
+}
+inline bool is_off(const Light& light) {
+    return light.w == -1;
+}
+/// How many lights are to be counted as bad input.
+template <class Any> std::uint32_t rejected_of(const std::vector<Any>& lights) {
+    std::uint32_t count = 0;
+    for (const Any& light : lights)
+        count += is_bad(light) && !is_off(light);
+    return count;
 }
 
 }  // namespace oracle

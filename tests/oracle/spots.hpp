@@ -25,9 +25,12 @@ inline ExactSpot exact_spot(const SpotLight& s) {
 }
 
 inline bool is_bad(const SpotLight& s) {
-    return is_bad(s.ball) || !std::isfinite(s.axis_x) || !std::isfinite(s.axis_y) ||
-           !std::isfinite(s.axis_z) || (s.axis_x == 0 && s.axis_y == 0 && s.axis_z == 0) ||
-           !(std::abs(s.cosine) <= 1);
+    const bool no_axis = !std::isfinite(s.axis_x) || !std::isfinite(s.axis_y) || !std::isfinite(s.axis_z) ||
+                         (s.axis_x == 0 && s.axis_y == 0 && s.axis_z == 0);
+    return is_bad(s.ball) || (no_axis && s.cosine != -1) || !(std::abs(s.cosine) <= 1);
+}
+inline bool is_off(const SpotLight& s) {
+    return is_off(s.ball);
 }
 
 inline std::string text(const SpotLight& s) {
@@ -258,6 +261,7 @@ inline SpotLight special(const Aim& aim, Random& random) {
                          inf, -inf,  std::nanf(""), 1,       -1,      1.0000001f};
     for (float* v : {&light.axis_x, &light.axis_y, &light.axis_z, &light.cosine})
         if (random.chance(0.3)) *v = odd[random.integer(0, 11)];
+    if (random.chance(0.2)) light.axis_x = light.axis_y = light.axis_z = 0, light.cosine = -1;
     return light;
 }
 

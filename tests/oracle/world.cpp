@@ -23,7 +23,7 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
             const std::vector<Light> lights = into_world(make(set, camera, 110, ++seed), matrix);
             const auto grid = binner.bin(view, lightbin::world_space(lights, matrix.m));
             REQUIRE(grid.has_value());
-            CHECK(grid->light_counts().rejected == std::count_if(lights.begin(), lights.end(), is_bad));
+            CHECK(grid->light_counts().rejected == rejected_of(lights));
             const std::vector<Emitted> emitted = emitted_tiles(*grid, lights.size());
             for (std::size_t i = 0; i < lights.size(); ++i) {
                 const Emitted& e = emitted[i];

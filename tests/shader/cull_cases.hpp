@@ -448,6 +448,9 @@ private:
         for (const lightbin::Sphere& s : spheres) {
             const float cosine = number(0, 1) < 0.15f ? number(-1, 0.1f) : number(0.5f, 1);
             spots.push_back({s.x, s.y, s.z, s.radius, number(-1, 1), number(-1, 1), number(-1, 1), cosine});
+            lightbin::Spot& spot = spots.back();
+            if (spots.size() % 19 == 7) spot.axis_x = spot.axis_y = spot.axis_z = 0;  // bad, or a whole sphere
+            if (spots.size() % 38 == 7) spot.cos_half_angle = -1;
         }
         return spots;
     }

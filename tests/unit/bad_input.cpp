@@ -1,6 +1,5 @@
 // Bad input stays local, and the empty and the odd are fine.
 #include "scene.hpp"
-
 #include <cmath>
 #include <limits>
 
@@ -15,9 +14,9 @@ TEST_CASE("bad lights are skipped and counted, and the others are right") {
     const std::vector<glm::vec4> bad = {
         {not_a_number, 0, -5, 1},  {0, not_a_number, -5, 1}, {0, 0, not_a_number, 1},
         {0, 0, -5, not_a_number},  {inf, 0, -5, 1},          {0, -inf, -5, 1},
-        {0, 0, -inf, 1},           {0, 0, inf, 1},           {0, 0, -5, -1},
-        {0, 0, -5, -inf},          {0, 0, -5, -1e-45f},      {0, 0, 5, -1},
-        {not_a_number, 0, 0, inf}, {inf, 0, 0, inf},         {0, 0, 1e9f, -1},
+        {0, 0, -inf, 1},           {0, 0, inf, 1},           {0, 0, -5, -2},
+        {0, 0, -5, -inf},          {0, 0, -5, -1e-45f},      {0, 0, 5, -0.9999999f},
+        {not_a_number, 0, 0, inf}, {inf, 0, 0, inf},         {0, 0, 1e9f, -3},
         {1e20f, 0, -5, -1e20f},
     };
     auto lights = test::random_lights(600, 40);
@@ -48,6 +47,41 @@ TEST_CASE("bad lights are skipped and counted, and the others are right") {
     const glm::mat4 ortho = glm::ortho(-20.0f, 20.0f, -10.0f, 10.0f, 0.0f, 100.0f);
     CHECK(binner.bin(*View::from_projection(ortho, {960, 540}), mixed)->light_counts().rejected ==
           bad.size());
+}
+
+TEST_CASE("lights that are switched off are no bad input, whatever their other numbers are") {
+    const std::vector<Sphere> spheres = {{0, 0, -5, -1}, {not_a_number, inf, 0, -1}, {0, 0, -5, -2}, {0, 0, -5, 1}};
+    std::vector<Spot> spots;
+    std::vector<Box> boxes;
+    std::vector<glm::dvec4> vec4s;
+    for (const Sphere& s : spheres) {
+        vec4s.emplace_back(s.x, s.y, s.z, s.radius);
+        spots.push_back({s.x, s.y, s.z, s.radius, 0, 0, s.radius < 0 ? s.x : 1, 0.5f});  // without an axis if off
+        boxes.push_back({s.x, s.y, s.z, s.radius, 0, 0, -5, {{s.radius < 0 ? s.y : 1, 0, 0}}});
+    }
+    const View view = test::view({960, 540}, 16);
+    const auto check = [&](const auto& lights) {
+        Binner<> binner;
+        for (const bool world : {false, true}) {
+            const auto grid = world ? binner.bin(view, world_space(lights, glm::mat4(1))) : binner.bin(view, lights);
+            REQUIRE(grid);
+            CHECK(grid->light_counts().rejected == 1);
+            CHECK(grid->light_counts().culled == 2);
+            CHECK(!grid->ids().empty());
+            for (const std::uint32_t id : grid->ids())
+                CHECK(id == 3);
+        }
+    };
+    check(spheres);
+    check(spots);
+    check(boxes);
+    check(vec4s);
+    // What makes lights of other shapes leaves them off.
+    const glm::vec3 a(1, 2, 3), b(7, 2, 11);
+    for (const Sphere& made :
+         {tube_sphere(a, b, -1), rectangle_sphere(a, b, b, -1), least_sphere(spots[0]), bounding_sphere(boxes[0]),
+          Sphere(half_sphere(spheres[0], a)), Sphere(tube_box(a, b, -1)), AsLight()(glm::dvec4(0, 0, -5, -1))})
+        CHECK(made.radius == -1);
 }
 
 TEST_CASE("an infinite radius covers everything, for every camera") {

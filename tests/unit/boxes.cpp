@@ -109,7 +109,7 @@ TEST_CASE("bad boxes are skipped and counted") {
         add([&](Box& b) { b.half_axes[1][2] = bad; });
         add([&](Box& b) { b.taper = bad; });
     }
-    for (const float bad : {nan, 0.0f, -1.0f, -HUGE_VALF})
+    for (const float bad : {nan, -1e-45f, -2.0f, -HUGE_VALF})
         add([&](Box& b) { b.radius = bad; });
     add([&](Box& b) { b.taper = -0.5f; });
     add([&](Box& b) { b.taper = 1.5f; });
@@ -118,6 +118,7 @@ TEST_CASE("bad boxes are skipped and counted") {
     add([](Box& b) { b.half_axes[2][2] = 0; });  // flat
     add([](Box& b) { b.half_axes[2][2] = b.half_axes[1][1] = 0; });
     add([](Box& b) { b.radius = HUGE_VALF; });
+    add([](Box& b) { b.radius = 0; });  // a point
     add([](Box& b) { b.taper = 0; });
     const View view = test::view({640, 360}, 16);
     Binner<> binner;
@@ -205,6 +206,41 @@ TEST_CASE("the functions that make boxes contain what they are named after, and 
         CHECK(bounding_sphere(clipped_sphere({c.x, c.y, c.z, 100}, whole)).radius == whole.radius);
     }
     CHECK(!(bounding_sphere(half_sphere({0, 0, 0, 1}, glm::vec3(0))).radius >= 0));
+    CHECK(!(bounding_sphere(half_sphere({0, 0, 0, std::nanf("")}, glm::vec3(1))).radius >= 0));
+    CHECK(!(bounding_sphere(half_sphere({HUGE_VALF, 0, 0, HUGE_VALF}, glm::vec3(1))).radius >= 0));
+    CHECK(!(bounding_sphere(tube_box(glm::vec3(HUGE_VALF), glm::vec3(1), 1)).radius >= 0));
     CHECK(!(bounding_sphere(tube_box(glm::vec3(0), glm::vec3(1), -1)).radius >= 0));
     CHECK(bounding_sphere(tube_box(glm::vec3(1), glm::vec3(1), 2)).radius == doctest::Approx(2));
+}
+
+TEST_CASE("the functions that make boxes lose no light that is as large as floats are, or endless, or a point") {
+    constexpr float most = std::numeric_limits<float>::max();
+    const glm::vec3 zero(0), up(0, 1, 0), far(0, 0, -most);
+    std::vector<Box> boxes, points;
+    for (const float radius : {HUGE_VALF, most, 2e38f}) {
+        boxes.push_back(half_sphere({0, -3, -5, radius}, up));
+        boxes.push_back(half_sphere({0, -1e38f, 0, radius}, glm::vec3(1e-45f, most, 0)));
+        boxes.push_back(tube_box(zero, far, radius));
+        boxes.push_back(tube_box(-far, far, radius));
+        boxes.push_back(clipped_sphere({0, 0, -5, radius}, whole_box(zero, up * most, far, glm::vec3(most, 0, 0))));
+    }
+    boxes.push_back(tube_box(glm::dvec3(0, 0, 1e308), glm::dvec3(0, 0, -1e308), 1e38f));
+    boxes.push_back(whole_box(glm::dvec3(0), glm::dvec3(1e39, 0, 0), glm::dvec3(0, 1e39, 0), glm::dvec3(0, 0, 1e39)));
+    boxes.push_back(projector_box(glm::dvec3(0, 0, 1e39), {0, 0, -1e40}, {1e40, 0, 0}, {0, 1e40, 0}));
+    const Sphere none = {0, 0, -5, light_range(0, 1)};
+    for (const glm::vec3& centre : {glm::vec3(0, 0, -5), glm::vec3(1e-45f, 0, -3e38f)})
+        for (const Sphere& point : {none, Sphere{centre.x, centre.y, centre.z, 0}, Sphere{0, 0, -1, 1e-45f}}) {
+            points.push_back(half_sphere(point, up));
+            points.push_back(tube_box(centre, centre, point.radius));
+        }
+    const View view = *View::from_projection(glm::infinitePerspective(1.0f, 1.5f, 0.1f), {96, 64}, {.tile_size = 32});
+    Binner<> binner;
+    for (const std::vector<Box>& some : {boxes, points}) {
+        const auto grid = binner.bin(view, some);
+        REQUIRE(grid);
+        CHECK(grid->light_counts().rejected == 0);
+        CHECK(grid->light_counts().culled == 0);
+    }
+    for (const std::vector<std::uint32_t>& list : test::lists(view, boxes))
+        CHECK(list.size() == boxes.size());
 }

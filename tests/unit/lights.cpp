@@ -319,10 +319,35 @@ TEST_CASE("spots are lights wherever spheres are, and bad ones are skipped and c
     CHECK(test::entries(expected) < test::entries(test::lists(full_view, spheres)));
 }
 
+TEST_CASE("a spot with the cosine -1 is its sphere, whatever its axis is") {
+    std::mt19937 random(10);
+    const auto spheres = test::random_lights(500, 11);
+    const float nan = std::nanf("");
+    const glm::vec3 axes[] = {glm::vec3(0), glm::vec3(nan), glm::vec3(HUGE_VALF, 0, 0), glm::vec3(1e-45f), {0, 0, 1}};
+    std::vector<Spot> spots;
+    for (const glm::vec4& s : spheres) {
+        const glm::vec3& axis = axes[random() % 5];
+        spots.push_back({s.x, s.y, s.z, s.w, axis.x, axis.y, axis.z, -1});
+    }
+    const auto check = [&]<Options options> {
+        CHECK(test::id_lists<options>(full_view, spots) == test::id_lists<options>(full_view, spheres));
+        CHECK(test::id_lists<options>(full_view, world_space(spots, full_turn)) ==
+              test::id_lists<options>(full_view, world_space(spheres, full_turn)));
+    };
+    test::on_machine_tiers([&]<Isa isa> { check.operator()<Options{.isa = isa}>(); });
+    check.operator()<Options{.depth_test = DepthTest::box}>();
+    Binner<> binner;
+    CHECK(binner.bin(full_view, spots)->light_counts().rejected == 0);
+    spots = {{0, 0, -5, 1, 0, 0, 0, -0.99999994f}, {0, 0, -5, nan, 0, 0, 0, -1}, {nan, 0, -5, 1, 0, 0, 0, -1}};
+    CHECK(binner.bin(full_view, spots)->light_counts().rejected == 3);
+}
+
 // That these spheres hold the shapes, and are the least that do, is proven in tests/oracle/least_spheres.cpp.
 TEST_CASE("spheres around lights of other shapes, whole, endless or bad") {
     for (const float cosine : {0.0f, -0.0f, -0.3f, -1.0f})
         CHECK(least_sphere({1, 2, 3, 8, 0, 1e-45f, 0, cosine}).radius == 8);
+    for (const float axis : {0.0f, HUGE_VALF, std::nanf("")})
+        CHECK(least_sphere({1, 2, 3, 8, axis, axis, 0, -1}).radius == 8);
     CHECK(least_sphere({1, 2, 3, HUGE_VALF, 0, 1, 0, 0.9f}).radius == HUGE_VALF);
     CHECK(least_sphere({1, 2, 3, 0, 0, 1, 0, 0.9f}).radius == 0);
 

@@ -220,7 +220,7 @@ inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
 /// Returns which boxes of a vector are good input, see Box. `given` has the numbers of each in their order in memory.
 LIGHTBIN_INLINE unsigned good_boxes(const Floats (&given)[17]) {
     const Floats largest = broadcast(FLT_MAX);
-    auto good = both(less(Floats{}, given[3]),
+    auto good = both(less_equal(Floats{}, given[3]),
                      both(less_equal(Floats{}, given[16]), less_equal(given[16], broadcast(1.0f))));
     Floats longest = Floats{};
     LIGHTBIN_UNROLL for (unsigned i = 0; i < 16; ++i) {
@@ -310,11 +310,15 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
                                    less_equal(broadcast(float_safe_min), axes)));
             // Most boxes are seen to be good by numbers that are needed anyway: sums that are not NaN or infinite, of
             // axes that are not 0.
-            const auto in_range = both(both(less(Floats{}, given[3]), less_equal(given[16], broadcast(1.0f))),
+            const auto in_range = both(both(less_equal(Floats{}, given[3]), less_equal(given[16], broadcast(1.0f))),
                                        less_equal(Floats{}, given[16]));
             unsigned good = movemask(both(safe, in_range)) & valid;
-            if (good != valid) good = good_boxes(given) & valid;
-            counts.rejected += static_cast<std::uint32_t>(std::popcount(valid & ~good));
+            if (good != valid) {
+                good = good_boxes(given) & valid;
+                const Floats off = broadcast(-1.0f);
+                const unsigned lit = ~movemask(both(less_equal(given[3], off), less_equal(off, given[3])));
+                counts.rejected += static_cast<std::uint32_t>(std::popcount(valid & ~good & lit));
+            }
             const unsigned kept =
                 good & ~movemask(both(ball_safe, out_of_view(view, ball[0], ball[1], ball[2], ball[3],
                                                              ball[2] - ball[3], ball[2] + ball[3], ball_size)));

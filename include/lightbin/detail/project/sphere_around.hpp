@@ -6,14 +6,21 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A Sphere that is bad input: skipped and counted.
-inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
+/// Whether a light is switched off: see Sphere.
+template <class Real> bool is_off(Real radius) {
+    return radius == -1;
+}
+
+/// Returns a Sphere that is in no list: switched off if this radius says so, else bad input, which is counted.
+inline Sphere unlit_sphere(double radius) {
+    return {0, 0, 0, is_off(radius) ? -1 : -infinity};
+}
 
 /// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is
 /// enlarged by the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre
 /// beyond the range of floats gives a sphere that covers everything.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
-    if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return bad_sphere;
+    if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return unlit_sphere(radius);
     constexpr double most = static_cast<double>(FLT_MAX);
     if (abs_of(x) > most || abs_of(y) > most || abs_of(z) > most) return {0, 0, 0, infinity};
     const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};

@@ -13,16 +13,17 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
-/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more
-/// and an infinite radius give the spot's own sphere; a bad spot gives a bad Sphere.
+/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more,
+/// an infinite radius and a light switched off give the spot's own sphere; a bad spot gives a bad Sphere.
 inline Sphere least_sphere(const Spot& spot) {
     const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
                                  static_cast<double>(spot.axis_z)};
     const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),
                  radius = static_cast<double>(spot.radius);
-    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1))
-        return detail::bad_sphere;
     const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
+    if (cosine == -1 || detail::is_off(radius)) return own;
+    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1))
+        return detail::unlit_sphere(radius);
     if (cosine <= 0 || spot.radius == detail::infinity) return own;
 
     // The spot's farthest points from any point on the axis are the apex or the rim, the circle where cone and sphere
@@ -66,7 +67,7 @@ inline Sphere sphere_of_corners(const Box& box) {
                  depth = length(along);
     if (!finite(centre) || !is_finite(width) || !is_finite(depth) || !(width + depth > 0) || !(taper >= 0) ||
         !(taper <= 1))
-        return bad_sphere;
+        return unlit_sphere(0);
     double shift = rounded((1 - rounded(taper * taper)) * (width * width)) / rounded(4 * depth * depth);
     shift = shift < 1 ? shift : depth > 0 ? 1.0 : 0.0;
     double radius = 0;
@@ -82,11 +83,11 @@ inline Sphere sphere_of_corners(const Box& box) {
 }  // namespace detail
 
 /// Returns a sphere that contains all points of a Box: the Box's own sphere or, if smaller, one around the box's
-/// corners. A bad Box gives a bad Sphere.
+/// corners. A bad Box gives a bad Sphere, one that is switched off such a Sphere.
 inline Sphere bounding_sphere(const Box& box) {
     const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
     const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);
-    if (!finite || !(own.radius > 0) || !(corners.radius > 0)) return detail::bad_sphere;
+    if (!finite || !(own.radius >= 0) || !(corners.radius > 0)) return detail::unlit_sphere(own.radius);
     return corners.radius < own.radius ? corners : own;
 }
 

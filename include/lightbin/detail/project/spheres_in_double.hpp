@@ -88,7 +88,7 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
                                   static_cast<double>(sphere.radius)};
         const double z = in_view[2], radius = in_view[3];
         const bool good = is_finite(in_view[0]) && is_finite(in_view[1]) && is_finite(z) && 0 <= radius;
-        counts.rejected += !good;
+        counts.rejected += !good && !is_off(radius);
         if (!good || z + radius < static_cast<double>(camera.near_depth) ||
             static_cast<double>(camera.far_depth) < z - radius)
             continue;

@@ -48,7 +48,9 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         both(less_equal(manhattan_length(apex), broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
     safe = both(safe, both(less_equal(broadcast(float_safe_min), given_radius),
                            less_equal(given_radius, broadcast(float_safe_max))));
-    safe = both(safe, both(less_equal(broadcast(0x1p-20f), axis_size), less_equal(axis_size, broadcast(0x1p20f))));
+    safe = both(safe, either(less_equal(cosine, broadcast(-1.0f)),  // a whole sphere: its axis is not read
+                             both(less_equal(broadcast(0x1p-20f), axis_size),
+                                  less_equal(axis_size, broadcast(0x1p20f)))));
     Floats tolerance = mul(spots.radius, broadcast(0x1p-18f));
     if (transform.to_view != nullptr) {
         const Floats from_origin[] = {apex[0] - transform.origin[0], apex[1] - transform.origin[1],

@@ -14,8 +14,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
-/// one of its numbers exceeds 2^40, else 2. The bits of floats without a sign ascend with the floats: those of 2^40 are
-/// 0x53800000, of infinity 0x7f800000.
+/// one of its numbers exceeds 2^40, 3 for one that is switched off, else 2. The bits of floats without a sign ascend
+/// with the floats: those of 2^40 are 0x53800000, of infinity 0x7f800000. Those of -1 are 0xbf800000.
 inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
     const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
     const CullLayout& at = options.lights_at;
@@ -28,7 +28,7 @@ inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
     if (max(max(x, y), z) >= 0x7f800000u || size > 0x7f800000u || radius > 0x80000000u) { state = 0u; }
 )");
     if (options.kind == CullKind::spot) add_spot_state(writer, options.lights_at);
-    writer.add("    return state;\n}\n");
+    writer.add("    if (radius == 0xbf800000u) { state = 3u; }\n    return state;\n}\n");
 }
 
 /// Adds the function `sphere_at`, which returns a light's sphere in view space, signed so that tile indices grow with x
@@ -135,8 +135,8 @@ vec2 $clipped(float c, float z, float r, float n) {
 )");
 }
 
-/// Adds `bounds_of` a sphere along an image axis, and `span`, the first and last tile of bounds; first > last if
-/// there is none.
+/// Adds `bounds_of` a sphere along an image axis, and `span`, the first and last tile of bounds, where -1e30 and 1e30
+/// are infinite; first > last if there is none.
 ///
 /// An edge at x = p + offset tiles in the viewport, where p = scale slope, has a |p| of at most F, the greater one of
 /// |offset| and |tiles - offset|. The GPU's slope is off by 28u of itself, the rounded scale by u and the product by
@@ -164,6 +164,8 @@ uvec2 $span(vec4 axis, uint tiles, vec2 bounds) {
     float low = bounds.x * axis.x + axis.y - axis.z;
     float high = bounds.y * axis.x + axis.y + axis.z;
     float most = float(tiles) - 0.5;
+    if (bounds.x <= -1e30) { low = 0.0; }
+    if (bounds.y >= 1e30) { high = most; }
     uvec2 span = uvec2(1u, 0u);
     if (high >= 0.0 && low <= axis.w) { span = uvec2(uint(clamp(low, 0.0, most)), uint(clamp(high, 0.0, most))); }
     return span;

@@ -9,14 +9,15 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Adds to `state_of` what makes a spot bad: an axis that is not finite or zero, a cosine that is NaN or beyond 1.
+/// Adds to `state_of` what makes a spot bad: a cosine that is NaN or beyond 1 or, unless it is -1, an axis that is not
+/// finite or zero.
 inline void add_spot_state(ShaderWriter& writer, const CullLayout& layout) {
-    const auto word = [&](std::uint32_t offset) {
-        return "($lights[at + " + std::to_string(offset) + "u] & 0x7fffffffu)";
-    };
-    writer.add("    uint axis = max(max(" + word(layout.axis) + ", " + word(layout.axis + 1) + "), " +
-               word(layout.axis + 2) + ");\n    if (axis == 0u || axis >= 0x7f800000u || " + word(layout.cosine) +
-               " > 0x3f800000u) { state = 0u; }\n");
+    const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
+    const auto unsigned_word = [&](std::uint32_t offset) { return "(" + word(offset) + " & 0x7fffffffu)"; };
+    writer.add("    uint axis = max(max(" + unsigned_word(layout.axis) + ", " + unsigned_word(layout.axis + 1) + "), " +
+               unsigned_word(layout.axis + 2) + ");\n    if (" + word(layout.cosine) +
+               " != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || " + unsigned_word(layout.cosine) +
+               " > 0x3f800000u)) { state = 0u; }\n");
 }
 
 /// Adds the struct of a spot and the function `spot_at`, which reads one whose ball is given. A spot that counts as
@@ -52,7 +53,7 @@ $spot $spot_at(uint at, vec4 ball) {
     vec3 axis = vec3()" + number(axis) + ", " + number(axis + 1) + ", " + number(axis + 2) + R"();
     float cosine = )" + number(options.lights_at.cosine) + R"(;
     float length1 = abs(axis.x) + abs(axis.y) + abs(axis.z);
-    bool sound = length1 >= 9.5367432e-7 && length1 <= 1048576.0;
+    bool sound = cosine <= -1.0 || (length1 >= 9.5367432e-7 && length1 <= 1048576.0);
     float tolerance = ball.w * 1.5258789e-5;
 )" + (options.world_space ? "    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - " +
                                 number(options.lights_at.radius) + " * $origin.w, 0.0);\n"
