@@ -21,6 +21,7 @@ struct SpotLight {
 };
 
 inline ExactSpot exact_spot(const SpotLight& s) {
+    if (s.cosine == -1) return exact_spot(s.ball.x, s.ball.y, s.ball.z, s.ball.w, 0, 0, 0, -1);  // any axis, even NaN
     return exact_spot(s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine);
 }
 
