@@ -32,7 +32,7 @@ void run_passes(Stage& stage, const std::vector<lightbin::ShaderText>& texts,
 
 GpuLists::GpuLists(const lightbin::CullShaderOptions& options) : options_(options) {
     options_.lights_at.stride = 8;  // of Stage's buffer, in words: centre, range, intensity
-    for (const lightbin::CullPass pass : lightbin::cull_passes(options_.slicing)) {
+    for (const lightbin::CullPass pass : lightbin::cull_passes) {
         texts_.push_back(value_of(lightbin::cull_shader(pass, options_)));
         texts_.back().text.insert(0, "#version 430 core\n");
     }
@@ -52,7 +52,7 @@ void GpuLists::build(Stage& stage, const lightbin::Slices* slices) {
                      lists = make("lists", plan.bytes.lists);
         stage.memory.read_texels(unit_tiles, GL_RG32UI, tiles);
         stage.memory.read_texels(unit_lists, GL_R32UI, lists);
-        run_passes(stage, texts_, lightbin::cull_passes(options_.slicing), plan);
+        run_passes(stage, texts_, lightbin::cull_passes, plan);
         stage.lap("build");
         done = known;
         if (known) continue;

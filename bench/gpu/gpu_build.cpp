@@ -58,7 +58,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     options_.slicing = options.slicing;
     plan_ = plan_of(first, view_, options_, room_, slices_);
     std::vector<ComputePass> passes;
-    for (const lightbin::CullPass pass : lightbin::cull_passes(options.slicing)) {
+    for (const lightbin::CullPass pass : lightbin::cull_passes) {
         const lightbin::CullGroups groups = plan_.groups_of(pass);
         passes.push_back(
             {to_string(pass), value_of(lightbin::cull_shader(pass, options_)), groups.x, groups.y});
@@ -75,8 +75,6 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     make("scratch", plan_.bytes.scratch);
     make("tiles", plan_.bytes.tiles);
     make("lists", plan_.bytes.lists);
-    make("order", plan_.bytes.order);
-    make("bins", plan_.bytes.bins);
     fill("lights", bytes_of(first.lights));
     fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
     if (options.depth_test != lightbin::DepthTest::none)
@@ -95,14 +93,10 @@ double GpuBuild::upload(const GpuFrame& frame) {
 }
 
 ReadLists GpuBuild::read() {
-    const bool z_bins = options_.slicing == lightbin::Slicing::z_bins;
     ReadLists lists;
     lists.totals = read_as<lightbin::CullTotals>(device_, "scratch", 1)[0];
     lists.ranges =
         read_as<lightbin::ListRange>(device_, "tiles", static_cast<std::size_t>(plan_.bytes.tiles / 8));
     lists.ids = read_as<std::uint32_t>(device_, "lists", std::min(lists.totals.entries, room_.entries));
-    if (!z_bins) return lists;
-    lists.order = read_as<std::uint32_t>(device_, "order", lists.totals.visible);
-    lists.bins = read_as<lightbin::BinRange>(device_, "bins", static_cast<std::size_t>(slices_->count()));
     return lists;
 }

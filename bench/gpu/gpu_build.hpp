@@ -15,13 +15,11 @@
 #include <string>
 #include <vector>
 
-/// Lists as shaders read them; with z-bins ids are ranks.
+/// Lists as shaders read them.
 struct ReadLists {
     lightbin::CullTotals totals;
     std::vector<lightbin::ListRange> ranges;
     std::vector<std::uint32_t> ids;
-    std::vector<std::uint32_t> order;      ///< with z-bins
-    std::vector<lightbin::BinRange> bins;  ///< with z-bins
 };
 
 /// Builds of frames that have the lens and the number of lights of the first one.

@@ -50,7 +50,6 @@ public:
         measure_one<Options{.slicing = Slicing::clusters}>(source, "clusters, 64 px", 64);
         measure_one<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
             source, "clusters+box, 64 px", 64);
-        measure_one<Options{.slicing = Slicing::z_bins}>(source, "z-bins, 32 px", 32);
     }
 
 private:
@@ -61,12 +60,9 @@ private:
         try {
             const bool bounded = options.depth_test != DepthTest::none && options.slicing == Slicing::none;
             const MadeBounds* const made = bounded ? &made_ : nullptr;
-            const lightbin::Slices slices = options.slicing == Slicing::clusters
-                                                ? cluster_slices(source.reach)
-                                                : z_bin_slices(source.reach);
             const bool plain = options.depth_test == DepthTest::none && options.slicing == Slicing::none;
             GpuRow row =
-                measure<options>(device_, source, tile_size, turns_, slices,
+                measure<options>(device_, source, tile_size, turns_, cluster_slices(source.reach),
                                  made ? made->bounds : lightbin::ZBounds{}, plain && lights <= 10000);
             row.method = method;
             rows_.push_back(row);

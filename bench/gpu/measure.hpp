@@ -88,7 +88,7 @@ inline void measure_brute_force(GpuDevice& device, const LightSource& source, co
         const auto grid = cpu(source.frames[std::size_t(turn) % source.frames.size()], view);
         brute.upload(cpu.binner().coverage());
         runs.push_back(brute.run());
-        const Difference d = compare(brute.read(), grid.ranges(), grid.ids(), {});
+        const Difference d = compare(brute.read(), grid.ranges(), grid.ids());
         row.brute_wrong += d.missed + d.more + d.unordered;
     }
     row.brute_ms = median(runs);
@@ -101,8 +101,7 @@ inline void measure_brute_force(GpuDevice& device, const LightSource& source, co
 template <lightbin::Options options>
 GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, const TurnsOf& turns,
                const lightbin::Slices& slices, const lightbin::ZBounds& bounds, bool brute_force) {
-    constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
-    constexpr bool sliced = options.slicing != lightbin::Slicing::none;
+    constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
     const GpuFrame& first = source.frames.front();
     const lightbin::View view = first.lens.view(tile_size);
     GpuRow row;
@@ -116,12 +115,10 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     for (const GpuFrame& frame : source.frames)
         longest = std::max<std::size_t>(longest, cpu(frame, view).ids().size());
     const std::size_t room = longest + longest / 8 + 1024;
-    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), sliced ? &slices : nullptr, bounds);
+    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr, bounds);
     row.scratch = std::size_t(gpu.plan().bytes.scratch);
-    device.make_buffer("sent ranges", sliced ? gpu.plan().bytes.tiles : 8 * view.tile_count());
+    device.make_buffer("sent ranges", gpu.plan().bytes.tiles);
     device.make_buffer("sent ids", 4 * room);
-    if (z_bins) device.make_buffer("sent bins", 8 * std::size_t(slices.count()));
-    if (z_bins) device.make_buffer("sent order", 4 * row.lights);
     const auto send = [&](const auto& grid) {
         row.cpu_bytes = 0;
         const auto write = [&](const char* name, const auto& values) {
@@ -129,10 +126,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
             row.cpu_bytes += bytes.size();
             return bytes.empty() ? 0 : device.write(name, bytes);
         };
-        double ms = write("sent ranges", grid.ranges()) + write("sent ids", grid.ids());
-        if constexpr (z_bins)
-            ms += write("sent bins", grid.ranks().bins) + write("sent order", grid.ranks().order);
-        return ms;
+        return write("sent ranges", grid.ranges()) + write("sent ids", grid.ids());
     };
 
     // The lists, of each frame once.
@@ -140,16 +134,13 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
         gpu.upload(frame);
         gpu.run(false);
         const auto grid = cpu(frame, view);
-        const ReadLists lists = gpu.read();
-        row.difference += compare(lists, grid.ranges(), grid.ids(), grid.ranks());
-        if (z_bins) row.difference.missed += missed_in_bins(lists, frame, slices);
+        row.difference += compare(gpu.read(), grid.ranges(), grid.ids());
     }
     {
         CpuBuild<lightbin::Options{.slicing = options.slicing, .coverage = true}> covering(slices, {});
         const auto grid = covering(first, view);
         row.in_view = grid.light_counts().lights - grid.light_counts().rejected - grid.light_counts().culled;
-        row.tests = tests_of(covering.binner().coverage(), gpu.plan(),
-                             options.slicing == lightbin::Slicing::clusters ? &slices : nullptr);
+        row.tests = tests_of(covering.binner().coverage(), gpu.plan(), clusters ? &slices : nullptr);
     }
 
     std::vector<double> builds, sends, uploads, runs;
@@ -170,9 +161,8 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     row.cpu_ms = median(builds), row.cpu_upload_ms = median(sends);
     row.gpu_ms = median(runs), row.gpu_upload_ms = median(uploads);
     row.gpu_bytes = gpu.uploaded_bytes();
-    const auto names = lightbin::cull_passes(options.slicing);
     for (std::size_t i = 0; i < passes.size(); ++i)
-        row.passes.emplace_back(to_string(names[i]), median(passes[i]));
+        row.passes.emplace_back(to_string(lightbin::cull_passes[i]), median(passes[i]));
     if (brute_force) measure_brute_force(device, source, view, room, turns, row);
     return row;
 }

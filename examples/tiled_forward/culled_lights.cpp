@@ -78,7 +78,7 @@ const std::vector<CulledLights::Pass>& CulledLights::passes(const lightbin::Cull
     std::vector<Pass>& made = passes_[{options.depth_test, options.max_only,
                                        options.slicing == lightbin::Slicing::clusters, options.orthographic}];
     if (!made.empty()) return made;
-    for (const lightbin::CullPass which : lightbin::cull_passes(options.slicing)) {
+    for (const lightbin::CullPass which : lightbin::cull_passes) {
         const lightbin::ShaderText shader = value_of(lightbin::cull_shader(which, options));
         made.push_back({which, shader.bindings, link_compute_program(version_line(glsl_) + shader.text)});
     }

@@ -81,17 +81,17 @@ export class Controls {
     // reasons: by the depth method that can't be had.
     refuse_methods(reasons) {
         for (const option of by_id('method').options) option.disabled = option.value in reasons;
-        this.#say_refused('method', Object.values(reasons)[0], 'Z bounds can\'t be had here: ');
+        this.#say_refused('method', Object.values(reasons)[0]);
     }
 
     refuse_webgpu(reason) {
         by_id('renderer').options[1].disabled = reason !== null;
-        this.#say_refused('webgpu', reason, 'WebGPU can\'t be had here: ');
+        this.#say_refused('webgpu', reason && `WebGPU can't be had here: ${reason}`);
     }
 
     #refused = {};
-    #say_refused(what, reason, words) {
-        this.#refused[what] = reason ? sentence(words + reason) : '';
+    #say_refused(what, reason) {
+        this.#refused[what] = reason ? sentence(reason) : '';
         const lines = Object.values(this.#refused).filter(line => line !== '');
         by_id('refused').textContent = lines.join('\n');
         by_id('refused').hidden = lines.length === 0;
@@ -157,7 +157,7 @@ export function show_advice(plans, pixels, take) {
         row.classList.toggle('best', plan === plans[0]);
         const button = cell('button', plan.tiled ? `${tile} px, ${words_of(plan)}` : 'every light');
         button.type = 'button';
-        button.disabled = !method;
+        button.disabled = by_id('method').querySelector(`[value=${method}]`)?.disabled ?? true;
         button.addEventListener('click', () => take({method, tile}));
         row.insertCell().append(button);
         row.append(...[(buildNs / 1e6).toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
@@ -166,7 +166,7 @@ export function show_advice(plans, pixels, take) {
     by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile '
         + 'sizes, of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, '
         + 'lights that a pixel goes through, and milliseconds with a guess of the shading. Press one to take it; those '
-        + 'in grey are not drawn by this page.'));
+        + 'in grey are not drawn here.'));
     by_id('advice').hidden = false;
     by_id('advice').focus();
 }

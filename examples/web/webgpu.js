@@ -2,7 +2,7 @@
 // The WebGPU renderer: draw() has the frame from top to bottom.
 import {list_sizes} from './lighting.js';
 import {frame_constants} from './shading_wgsl.js';
-import {CulledLists, RankedLights} from './webgpu_lists.js';
+import {CulledLists} from './webgpu_lists.js';
 import {Store, usages} from './webgpu_parts.js';
 import {Programs, depth_format, picture_format} from './webgpu_programs.js';
 
@@ -19,7 +19,7 @@ function cut(width, height, lights) {
 export class WebGpu {
     name = 'WebGPU';
     rows_from_below = false;
-    refused = {};
+    refused = {z_bins: 'Z-bins can\'t be had in WebGPU: the GPU makes the lists there, of tiles and of clusters'};
     lost = null;  // a sentence, when the device is
 
     static async create(canvas) {
@@ -43,7 +43,6 @@ export class WebGpu {
     #programs;
     #lists;
     #glass_lists;  // with Z bounds
-    #ranked;       // with z-bins
     #longest = 0;  // of the lists last made: what the heat map's colours are relative to
     #opaque = 0;  // vertices of what is opaque; those of glass follow
     #glass = 0;
@@ -58,7 +57,6 @@ export class WebGpu {
         this.#programs = new Programs(device);
         this.#lists = new CulledLists(device);
         this.#glass_lists = new CulledLists(device);
-        this.#ranked = new RankedLights(device);
         device.lost.then(({message}) => this.lost ??= `The graphics device was lost. ${message}`);
         device.addEventListener('uncapturederror', ({error}) => this.lost ??= `WebGPU reports: ${error.message}`);
     }
@@ -105,7 +103,6 @@ export class WebGpu {
             this.#store('shapes').write(frame.shapes);
             this.#store('slices').write(frame.slices);
             all_lists.forEach((lists, i) => lists.upload(frame.plans[i], frame));
-            if (programs.ranked) this.#ranked.upload(frame);
             const upload = performance.now() - start;
 
             // 3. Depth, lists and picture.
@@ -228,28 +225,25 @@ export class WebGpu {
         pass.end();
     }
 
-    #make_lists(encoder, {lists, glass_lists, ranked}, {plans, light_count}) {
+    #make_lists(encoder, {lists, glass_lists}, {plans}) {
         const shared = {lightbin_lights: this.#store('shapes'), lightbin_slices: this.#store('slices')};
-        if (ranked) this.#ranked.clear(encoder);
         const pass = encoder.beginComputePass({timestampWrites: this.#times(2, 3)});
         this.#lists.encode(pass, lists, plans[0], shared);
         if (glass_lists) this.#glass_lists.encode(pass, glass_lists, plans[1], shared);
-        if (ranked) this.#ranked.encode(pass, ranked, this.#store('lights'), this.#lists, light_count);
         pass.end();
     }
 
-    #draw_band(encoder, {surface, glass, depth, glass_lists, ranked}, [top, rows], first, last) {
+    #draw_band(encoder, {surface, glass, depth, glass_lists}, [top, rows], first, last) {
         const pass = encoder.beginRenderPass({
             colorAttachments: [{view: this.#picture.createView(), loadOp: first ? 'clear' : 'load', storeOp: 'store'}],
             depthStencilAttachment: this.#depth_attachment(first && !depth),
             timestampWrites: this.#times(first ? 4 : undefined, last ? 5 : undefined),
         });
         pass.setScissorRect(0, top, this.#picture.width, rows);
-        const lights = ranked ? this.#ranked.ranked : this.#store('lights');
-        this.#draw_vertices(pass, surface, this.#resources(lights, this.#lists), 0, this.#opaque);
+        this.#draw_vertices(pass, surface, this.#resources(this.#lists), 0, this.#opaque);
         if (glass) {
             const lists = glass_lists ? this.#glass_lists : this.#lists;
-            this.#draw_vertices(pass, glass, this.#resources(lights, lists), this.#opaque, this.#glass);
+            this.#draw_vertices(pass, glass, this.#resources(lists), this.#opaque, this.#glass);
         }
         pass.end();
     }
@@ -265,11 +259,11 @@ export class WebGpu {
     }
 
     // What the names in the shaders of surfaces stand for.
-    #resources(lights, {tiles, lists, bins}) {
+    #resources({tiles, lists}) {
         return {
-            frame: this.#store('frame'), lights,
+            frame: this.#store('frame'), lights: this.#store('lights'),
             lightbin_grid_block: this.#store('grid'), lightbin_image_block: this.#store('view'),
-            lightbin_tiles: tiles, lightbin_lists: lists, lightbin_slices: this.#store('slices'), lightbin_bins: bins,
+            lightbin_tiles: tiles, lightbin_lists: lists, lightbin_slices: this.#store('slices'),
         };
     }
 

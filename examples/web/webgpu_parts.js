@@ -70,10 +70,10 @@ export class Program {
         return program;
     }
 
-    static async for_compute(device, {text, bindings}, entryPoint = 'main') {
+    static async for_compute(device, {text, bindings}) {
         const program = new Program(device, [bindings]), {layout} = program;
         const module = device.createShaderModule({code: text});
-        program.pipeline = await device.createComputePipelineAsync({layout, compute: {module, entryPoint}});
+        program.pipeline = await device.createComputePipelineAsync({layout, compute: {module, entryPoint: 'main'}});
         return program;
     }
 

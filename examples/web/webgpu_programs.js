@@ -2,7 +2,7 @@
 // The programs of the WebGPU renderer, each compiled when it is first wanted.
 import {cull_options, slicing_of, wants_bounds} from './lighting.js';
 import {depth_shader, frame_bindings, surface_shader} from './shading_wgsl.js';
-import {CulledLists, RankedLights} from './webgpu_lists.js';
+import {CulledLists} from './webgpu_lists.js';
 import {Program} from './webgpu_parts.js';
 
 export const picture_format = 'rgba8unorm', depth_format = 'depth32float';
@@ -22,7 +22,7 @@ export class Programs {
     }
 
     // Returns those of a frame: surface; glass, where the scene has some; lists; with Z bounds depth, reduce and
-    // glass_reduce, glass_lists; with z-bins ranked.
+    // glass_reduce, glass_lists.
     that_draw(lighting, look, {method, camera: {orthographic}}, {has_spots, has_glass}) {
         const bounded = wants_bounds(method), glass = has_glass && look !== 'heat';
         const lists = for_glass => this.#lists(lighting, cull_options(method, orthographic, has_spots, for_glass));
@@ -34,7 +34,6 @@ export class Programs {
             reduce: bounded && this.#reduce(lighting, orthographic, false),
             glass_reduce: bounded && glass && this.#reduce(lighting, orthographic, true),
             glass_lists: bounded && glass && lists(true),
-            ranked: slicing_of(method) === 'z-bins' && this.#once('ranked', () => RankedLights.kernels(this.#device)),
         });
     }
 

@@ -6,30 +6,24 @@
 #include <lightbin/options.hpp>
 #include <lightbin/shader_text.hpp>
 
-#include <span>
 #include <string_view>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The passes, in the order of their dispatches. With tiles and clusters there are five: project, count, sums, offsets
-/// and fill. With z-bins there are all nine. Each reads what the passes before it wrote, so there is a barrier between
-/// any two: one that makes the writes of storage buffers visible to the reads of compute shaders.
+/// The passes, in the order of their dispatches. Each reads what the passes before it wrote, so there is a barrier
+/// between any two: one that makes the writes of storage buffers visible to the reads of compute shaders.
 enum class CullPass : std::uint8_t {
-    project,      ///< finds each light's rectangle of tiles, and the blocks of tiles that it meets
-    bin_counts,   ///< z-bins: counts the lights that begin in each bin
-    bin_offsets,  ///< z-bins: finds the first rank of each bin
-    rank,         ///< z-bins: sorts the lights by the bin that they begin in, and finds the range of ranks of each bin
-    masks,        ///< z-bins: finds the blocks of tiles that each rank meets
-    count,        ///< counts the lights of each cell
-    sums,         ///< adds the counts up, over 128 cells at a time
-    offsets,      ///< adds the sums up, and finds the total
-    fill,         ///< writes the lists
+    project,  ///< finds each light's rectangle of tiles, and the blocks of tiles that it meets
+    count,    ///< counts the lights of each cell
+    sums,     ///< adds the counts up, over 128 cells at a time
+    offsets,  ///< adds the sums up, and finds the total
+    fill,     ///< writes the lists
 };
-inline constexpr int cull_pass_count = 9;
+inline constexpr CullPass cull_passes[] = {CullPass::project, CullPass::count, CullPass::sums, CullPass::offsets,
+                                           CullPass::fill};
 
 constexpr const char* to_string(CullPass value) {
-    return detail::name_at(value, {"project", "bin_counts", "bin_offsets", "rank", "masks", "count", "sums", "offsets",
-                                   "fill"});
+    return detail::name_at(value, {"project", "count", "sums", "offsets", "fill"});
 }
 
 /// What the lights in the buffer are. Boxes are refused.
@@ -55,7 +49,7 @@ struct CullLayout {
 
 /// What cull_shader() generates. All passes of a build need the same options, those of CullPass apart. Every device
 /// with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by default at
-/// bindings below 4, 128 invocations in a group and 16 KB of shared memory; none uses subgroups, and no group waits
+/// bindings below 4, 128 invocations in a group and 9 KB of shared memory; none uses subgroups, and no group waits
 /// for another.
 struct CullShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
@@ -67,26 +61,16 @@ struct CullShaderOptions {
 
     IdWidth ids = IdWidth::u32;              ///< u32, or u16: then each word of `lists` holds two ids
     DepthTest depth_test = DepthTest::none;  ///< split_box is an error; with clusters, interval is, too
-    Slicing slicing = Slicing::none;
+    Slicing slicing = Slicing::none;         ///< z_bins is an error
     bool max_only = false;      ///< tests with the maximum Z bound alone, for transparent surfaces; not with clusters
     bool orthographic = false;  ///< whether the view is orthographic: View::orthographic()
 
     /// The buffers; CullBytes has their sizes. Passes use slots in turn: no pass uses two buffers that have the
     /// same default.
-    ShaderSlot lights = {0}, z_bounds = {0}, scratch = {1}, slices = {2}, bins = {2}, tiles = {2}, light_count = {3},
-               order = {3}, lists = {3};
+    ShaderSlot lights = {0}, z_bounds = {0}, scratch = {1}, slices = {2}, tiles = {2}, light_count = {3}, lists = {3};
     ShaderSlot grid = {4};                  ///< the uniform block with the constants, laid out as ShaderCull
     std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
-
-/// Returns the passes to dispatch, in order: five, or with z-bins nine.
-inline std::span<const CullPass> cull_passes(Slicing slicing) {
-    using enum CullPass;
-    static constexpr CullPass lists[] = {project, count, sums, offsets, fill},
-                              bins[] = {project, bin_counts, bin_offsets, rank, masks, count, sums, offsets, fill};
-    if (slicing == Slicing::z_bins) return bins;
-    return lists;
-}
 
 /// The numbers of lights and of list entries that the caller's buffers have room for.
 struct CullRoom {
@@ -96,15 +80,14 @@ struct CullRoom {
 
 /// The values of the constants. The uniform block `grid` has this layout, a vec4 or uvec4 a line.
 struct ShaderCull {
-    std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters or bins, else 1; CullRoom::entries
+    std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters, else 1; CullRoom::entries
     /// Columns and rows of mask blocks; log2 of the tiles along a block's side, and of the slices in a block.
     std::uint32_t blocks_x, blocks_y, block_shift, slice_shift;
-    /// CullRoom::lights; the segments of lights, and the steps of 1024 lights in each; segments when bins are counted.
-    std::uint32_t lights, segments, steps, bin_segments;
-    // Where arrays begin in `scratch`, in words: of lights, lights in order of rank, masks, counts of cells,
-    // ranges of cells, sums of ranges, counts of groups of lights, and counts of bins.
-    std::uint32_t records, ranked, masks, counts;
-    std::uint32_t ranges, sums, groups, bin_counts;
+    // CullRoom::lights; the segments of lights, and the steps of 1024 lights in each. Then where arrays begin in
+    // `scratch`, in words: counts of groups of lights, masks, counts of cells, ranges of cells, and sums of ranges. The
+    // lights themselves are behind CullTotals.
+    std::uint32_t lights, segments, steps, groups;
+    std::uint32_t masks, counts, ranges, sums;
     // The image axes, in tiles, as in ImageAxis. The margins are those of the GPU's arithmetic.
     float scale_x, offset_x, margin_x, limit_x;
     float scale_y, offset_y, margin_y, limit_y;
@@ -117,7 +100,7 @@ struct ShaderCull {
     float column_z[3], cone_error;
     float origin_image[3], max_distance;
 };
-static_assert(sizeof(ShaderCull) == 14 * 16);  // it has no padding
+static_assert(sizeof(ShaderCull) == 13 * 16);  // it has no padding
 
 /// The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535.
 struct CullGroups {
@@ -129,8 +112,6 @@ struct CullBytes {
     std::uint64_t scratch = 0;  ///< written and read by the passes; its first words are CullTotals afterwards
     std::uint64_t tiles = 0;    ///< a ListRange for each cell
     std::uint64_t lists = 0;    ///< the ids
-    std::uint64_t order = 0;    ///< z-bins: the light of each rank, as LightRanks::order
-    std::uint64_t bins = 0;     ///< z-bins: a BinRange for each bin
 };
 
 /// What the passes leave in the first words of `scratch`.
@@ -146,7 +127,7 @@ static_assert(sizeof(CullTotals) == 16);
 struct CullPlan {
     ShaderCull constants = {};
     CullBytes bytes = {};
-    CullGroups groups[cull_pass_count] = {};  ///< by CullPass
+    CullGroups groups[std::size(cull_passes)] = {};  ///< by CullPass
 
     CullGroups groups_of(CullPass pass) const { return groups[static_cast<std::size_t>(pass)]; }
 };

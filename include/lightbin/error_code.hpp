@@ -172,7 +172,8 @@ inline constexpr const char* error_sentences[] = {
     "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
     "grids that are built on the GPU can test depth by intervals and boxes, but not by split boxes",
-    "clusters that are built on the GPU can test depth by boxes, but not by intervals",
+    ("lists that are built on the GPU are of tiles or of clusters, not of z-bins, and clusters test depth by boxes, not "
+     "by intervals"),
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",
@@ -180,7 +181,7 @@ inline constexpr const char* error_sentences[] = {
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
     // light grids made on the GPU
     "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
-    "a grid that is built on the GPU has at most {available} slices (z-bins: 1024), not {given}",
+    "a grid that is built on the GPU has at most {available} slices, not {given}",
     ("the world-to-view matrix distorts lengths by more than 32, or scales them by more than 2^20 or less than 2^-20: "
      "transform the lights to view space before they are culled"),
     ("the passes would need {needed} bytes of scratch memory, and their 32-bit indices reach {available}: use larger "

@@ -980,25 +980,14 @@ LIGHTBIN_API lightbin_result lightbin_shader_reduce(const lightbin_view* view, i
 /* ---- Shaders that make light grids on the GPU of lights there ---- */
 
 /* The compute shaders that make a whole light grid of lights in a buffer on the GPU, in the order of their dispatches,
- * with a barrier between any two. lightbin_cull_passes() has those to dispatch: five, or with z-bins all nine.
- * docs/gpu.md shows their use. */
+ * with a barrier between any two. docs/gpu.md shows their use. */
 typedef enum lightbin_cull_pass {
-    LIGHTBIN_CULL_PROJECT = 0,     /* finds each light's rectangle of tiles, and the blocks of tiles that it meets */
-    LIGHTBIN_CULL_BIN_COUNTS = 1,  /* z-bins: counts the lights that begin in each bin */
-    LIGHTBIN_CULL_BIN_OFFSETS = 2, /* z-bins: finds the first rank of each bin */
-    /* z-bins: sorts the lights by the bin that they begin in, and finds the range of ranks of each bin */
-    LIGHTBIN_CULL_RANK = 3,
-    LIGHTBIN_CULL_MASKS = 4,   /* z-bins: finds the blocks of tiles that each rank meets */
-    LIGHTBIN_CULL_COUNT = 5,   /* counts the lights of each cell */
-    LIGHTBIN_CULL_SUMS = 6,    /* adds the counts up, over 128 cells at a time */
-    LIGHTBIN_CULL_OFFSETS = 7, /* adds the sums up, and finds the total */
-    LIGHTBIN_CULL_FILL = 8     /* writes the lists */
+    LIGHTBIN_CULL_PROJECT = 0, /* finds each light's rectangle of tiles, and the blocks of tiles that it meets */
+    LIGHTBIN_CULL_COUNT = 1,   /* counts the lights of each cell */
+    LIGHTBIN_CULL_SUMS = 2,    /* adds the counts up, over 128 cells at a time */
+    LIGHTBIN_CULL_OFFSETS = 3, /* adds the sums up, and finds the total */
+    LIGHTBIN_CULL_FILL = 4     /* writes the lists */
 } lightbin_cull_pass;
-
-/* Returns the passes to dispatch for a lightbin_slicing, each a lightbin_cull_pass, in order, and writes their number
- * to *count. They are valid as long as the program. Null, and 0 passes, if slicing is no value, if count is null, or
- * if the program was compiled without this part. */
-LIGHTBIN_API const int32_t* lightbin_cull_passes(int32_t slicing, size_t* count);
 
 /* What the lights in the buffer are. Boxes are refused. */
 typedef enum lightbin_cull_kind {
@@ -1009,7 +998,7 @@ typedef enum lightbin_cull_kind {
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
  * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by
- * default at bindings below 4, 128 invocations in a group and 16 KB of shared memory; none uses subgroups, and no group
+ * default at bindings below 4, 128 invocations in a group and 9 KB of shared memory; none uses subgroups, and no group
  * waits for another. */
 typedef struct lightbin_cull_options {
     uint32_t size;
@@ -1026,24 +1015,23 @@ typedef struct lightbin_cull_options {
     uint32_t count_at;       /* with count_in_buffer: the index of the word that holds the number */
     int32_t ids;             /* LIGHTBIN_U32, or LIGHTBIN_U16: then each word of `lists` holds two ids */
     int32_t depth_test;      /* a lightbin_depth_test; SPLIT_BOX is an error; with clusters, INTERVAL is, too */
-    int32_t slicing;         /* a lightbin_slicing */
+    int32_t slicing;         /* a lightbin_slicing; Z_BINS is an error */
     /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
     int32_t max_only;
     int32_t orthographic; /* that of lightbin_view_info */
-    int32_t slots_given;  /* 0: bindings 0, 0, 1, 2, 2, 2, 3, 3, 3 and 4 of set 0 in the order below */
-    lightbin_slot lights, z_bounds, scratch, slices, bins, tiles, light_count, order, lists, grid;
+    int32_t slots_given;  /* 0: bindings 0, 0, 1, 2, 2, 3, 3 and 4 of set 0 in the order below */
+    lightbin_slot lights, z_bounds, scratch, slices, tiles, light_count, lists, grid;
 } lightbin_cull_options;
 
 /* Makes the text of one pass, a whole compute shader except for `#version`, with the buffers to bind. The name of a
  * binding is the prefix, the buffer's name in lightbin_cull_options and, in GLSL, `_block`; that of the constants ends
  * in `grid_block`. On success *shader is to be freed with lightbin_shader_destroy().
  *
- * After all passes, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids, and with z-bins
- * `order` and `bins`: the shader text of lightbin_shader_snippet() reads them. No light that reaches a cell is
- * missing in its list, and ids ascend in each. Lists also have lights that do not reach the cell, a few others than the
- * binner's: see docs/gpu.md. The same input gives the same bytes on every run. If the lists have more entries than
- * there is room for, the list of the first tile that does not fit is cut, and the lists after it are empty;
- * lightbin_cull_totals has the number that was needed.
+ * After all passes, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids: the shader text of
+ * lightbin_shader_snippet() reads them. No light that reaches a cell is missing in its list, and ids ascend in each.
+ * Lists also have lights that do not reach the cell, a few others than the binner's: see docs/gpu.md. The same input
+ * gives the same bytes on every run. If the lists have more entries than there is room for, the list of the first tile
+ * that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
  *
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
  * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER,
@@ -1062,13 +1050,11 @@ typedef struct lightbin_cull_plan {
     uint32_t size;
     uint32_t unused;
     /* The sizes of the buffers of a build, in bytes, each a multiple of 4 and at least 16. They need no initial
-     * content. order_bytes and bin_bytes are 0 without z-bins. */
+     * content. */
     uint64_t scratch_bytes; /* the first words of `scratch` are lightbin_cull_totals afterwards */
     uint64_t tile_bytes;    /* of `tiles`: a lightbin_range for each cell */
     uint64_t list_bytes;    /* of `lists`: the ids */
-    uint64_t order_bytes;   /* of `order`: the light of each rank, as lightbin_grid::order */
-    uint64_t bin_bytes;     /* of `bins`: a lightbin_bin_range for each bin */
-    lightbin_cull_groups groups[9]; /* by lightbin_cull_pass */
+    lightbin_cull_groups groups[5]; /* by lightbin_cull_pass */
     /* The content of the uniform block `grid`, all 256 bytes. Its layout is that of the texts of the same version of
      * lightbin: make both in the same program. */
     uint32_t constants[64];
@@ -1088,7 +1074,7 @@ typedef struct lightbin_cull_totals {
  * options   those of the texts; `pass` is not read
  * lights    the number of lights, with count_in_buffer the greatest
  * entries   how many ids fit in `lists`
- * slices    with clusters or z-bins, else null. The buffer `slices` holds what lightbin_shader_slices() writes
+ * slices    with clusters, else null. The buffer `slices` holds what lightbin_shader_slices() writes
  * to_view   with world_space the matrix from world space to view space, else null
  *
  * Without clusters, the buffer `z_bounds` holds the minimum and maximum of each tile, as the shader of
@@ -1097,8 +1083,8 @@ typedef struct lightbin_cull_totals {
  *
  * Errors: those of lightbin_cull_shader(); LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
  * LIGHTBIN_VIEW_MATRIX_DISTORTS, it is not close enough to a rotation with a uniform scale; LIGHTBIN_TOO_MANY_SLICES,
- * more than 65,535, or 1,024 z-bins; LIGHTBIN_TOO_MANY_LIGHTS for the ids; LIGHTBIN_SCRATCH_TOO_LARGE, more than
- * 2^32 - 1 words; LIGHTBIN_NOT_READ, slices or a matrix that the options do not read. */
+ * more than 65,535; LIGHTBIN_TOO_MANY_LIGHTS for the ids; LIGHTBIN_SCRATCH_TOO_LARGE, more than 2^32 - 1 words;
+ * LIGHTBIN_NOT_READ, slices or a matrix that the options do not read. */
 LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
                                                 const lightbin_cull_options* options, uint32_t lights,
                                                 uint32_t entries, const lightbin_slices* slices,

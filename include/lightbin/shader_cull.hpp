@@ -15,10 +15,10 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// Error that names the limit that the options exceed. The name of a binding is the prefix, the buffer's name in
 /// CullShaderOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
 ///
-/// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(), and with z-bins in
-/// ranks(): the shader text of shader_snippet() reads them. No light that reaches a cell is missing in its list, on
-/// the conditions of docs/limits.md, and ids ascend. Lists also have lights that do not reach the cell, a few others
-/// than the Binner's: see docs/gpu.md. The same input gives the same bytes on every run.
+/// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(): the shader text of
+/// shader_snippet() reads them. No light that reaches a cell is missing in its list, on the conditions of
+/// docs/limits.md, and ids ascend. Lists also have lights that do not reach the cell, a few others than the Binner's:
+/// see docs/gpu.md. The same input gives the same bytes on every run.
 ///
 /// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
 /// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is
@@ -29,15 +29,14 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
 /// the tile size or the room, only CullPlan::constants changes.
 ///
 /// options   of the texts; language, slots and prefix are not read
-/// slices    with clusters or z-bins, else null. The buffer `slices` holds shader_slices(*slices). With clusters and
-///           DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view)
+/// slices    with clusters, else null. The buffer `slices` holds shader_slices(*slices). With DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view)
 /// to_view   with options.world_space the matrix from world space to view space, else null
 ///
 /// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() (shader_reduce.hpp)
 /// writes them, and with DepthTest::box behind them shader_edges(view).
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
-/// slices or 1,024 z-bins; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
+/// slices; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
 inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
                                   const Slices* slices = nullptr, const Matrix* to_view = nullptr);
 

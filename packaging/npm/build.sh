@@ -43,7 +43,7 @@ module() {
 left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY COVERAGE)
 small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
 vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
-text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|cull_passes|plan_cull)'
+text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'
 advice='advi[sc]e|view_text'
 # What plan_cull() and the functions of advice take.
 planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)'

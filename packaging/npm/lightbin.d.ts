@@ -316,8 +316,7 @@ export interface ReduceShaderOptions {
 }
 
 /** The compute shaders that make the lists on the GPU of lights in a buffer there. */
-export type CullPass = 'project' | 'bin-counts' | 'bin-offsets' | 'rank' | 'masks' | 'count' | 'sums' | 'offsets'
-    | 'fill';
+export type CullPass = 'project' | 'count' | 'sums' | 'offsets' | 'fill';
 
 /** All passes need the same options except for `pass`. docs/gpu.md explains them and the buffers. */
 export interface CullShaderOptions {
@@ -338,13 +337,13 @@ export interface CullShaderOptions {
     ids?: 'u32' | 'u16';
     /** interval not with clusters. */
     depthTest?: 'no-depth-test' | 'interval' | 'box';
-    slicing?: Slicing;
+    slicing?: 'no-slicing' | 'clusters';
     maxOnly?: boolean;
     orthographic?: boolean;
     prefix?: string;
-    /** Default: the bindings 0, 0, 1, 2, 2, 2, 3, 3, 3 and 4 of set 0 in this order. */
-    slots?: {lights?: Slot, zBounds?: Slot, scratch?: Slot, slices?: Slot, bins?: Slot, tiles?: Slot, lightCount?: Slot,
-             order?: Slot, lists?: Slot, grid?: Slot};
+    /** Default: the bindings 0, 0, 1, 2, 2, 3, 3 and 4 of set 0 in this order. */
+    slots?: {lights?: Slot, zBounds?: Slot, scratch?: Slot, slices?: Slot, tiles?: Slot, lightCount?: Slot,
+             lists?: Slot, grid?: Slot};
 }
 
 /** What the buffers have room for, and what the options ask for. */
@@ -353,7 +352,7 @@ export interface CullRoom {
     lights: number;
     /** Ids that fit in the buffer `lists`. */
     entries: number;
-    /** With clusters and z-bins. */
+    /** With clusters. */
     slices?: Slices;
     /** With worldSpace. */
     viewMatrix?: Numbers;
@@ -365,7 +364,7 @@ export interface CullPlan {
     constants: Uint32Array;
     /** The sizes of the buffers. The first four words of scratch are, after the passes: the entries of the complete
      * lists, the lights that are bad input, those in view, and those given. */
-    bytes: {scratch: number, tiles: number, lists: number, order: number, bins: number};
+    bytes: {scratch: number, tiles: number, lists: number};
     /** The passes in the order of their dispatches, and the work groups of each. */
     passes: {pass: CullPass, x: number, y: number}[];
 }

@@ -713,8 +713,7 @@ const snippet = {make: c => c.lightbin_shader_snippet, options: 'snippetOptions'
 const reduce = {make: c => c.lightbin_reduce_shader, options: 'reduceOptions',
                 bindings: {depth: 0, zBounds: 1, grid: 2}};
 const cull = {make: c => c.lightbin_cull_shader, options: 'cullOptions',
-              bindings: {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3,
-                         lists: 3, grid: 4}};
+              bindings: {lights: 0, zBounds: 0, scratch: 1, slices: 2, tiles: 2, lightCount: 3, lists: 3, grid: 4}};
 
 function shader_options(core, generator, options) {
     const {options: struct, bindings} = generator, c = core.c;
@@ -763,19 +762,17 @@ function cull_plan(core, view, options, room) {
         if (slices != null) copies.push(Slices.copy(core, slices, 'slices'));
         return core.scope(c => {
             const {members} = structs.cullPlan, names = Object.keys(enums.cullPass);
-            const at = core.place('cullPlan'), count = c.stackAlloc(4), placed = shader_options(core, cull, options);
+            const at = core.place('cullPlan'), placed = shader_options(core, cull, options);
             const to_view = viewMatrix == null ? 0
                 : core.place('matrix', core.matrix(viewMatrix, layout, 'viewMatrix'), 'viewMatrix');
             core.check(c.lightbin_plan_cull, copies[0][address], placed, whole(lights, 'lights', 'uint32_t'),
                 whole(entries, 'entries', 'uint32_t'), copies[1]?.[address] ?? 0, to_view, at);
-            const {scratchBytes, tileBytes, listBytes, orderBytes, binBytes} = core.read('cullPlan', at);
+            const {scratchBytes, tileBytes, listBytes} = core.read('cullPlan', at);
             const groups = core.copy(Uint32Array, at + members.groups[1], 8 * names.length);
-            const numbers = c.lightbin_cull_passes(enums.slicing[options.slicing ?? 'no-slicing'], count);
-            const passes = core.copy(Int32Array, numbers, 4 * core.heap().getUint32(count, true));
             return {
                 constants: core.copy(Uint32Array, at + members.constants[1], 256),
-                bytes: {scratch: scratchBytes, tiles: tileBytes, lists: listBytes, order: orderBytes, bins: binBytes},
-                passes: Array.from(passes, i => ({pass: names[i], x: groups[2 * i], y: groups[2 * i + 1]})),
+                bytes: {scratch: scratchBytes, tiles: tileBytes, lists: listBytes},
+                passes: names.map((pass, i) => ({pass, x: groups[2 * i], y: groups[2 * i + 1]})),
             };
         });
     } finally {

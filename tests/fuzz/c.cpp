@@ -151,7 +151,7 @@ private:
 
 lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     lightbin_cull_options options = {};
-    options.language = take_number(bytes, 8), options.pass = take_number(bytes, 9);
+    options.language = take_number(bytes, 8), options.pass = take_number(bytes, 5);
     options.kind = take_number(bytes, 3), options.ids = take_number(bytes, 3);
     options.depth_test = take_number(bytes, 4), options.slicing = take_number(bytes, 3);
     options.prefix = prefix;
@@ -164,8 +164,8 @@ lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     options.orthographic = flags & 8, options.slots_given = flags & 16;
     int binding = 0;
     for (lightbin_slot* slot :
-         {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.bins,
-          &options.tiles, &options.light_count, &options.order, &options.lists, &options.grid}) {
+         {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.tiles,
+          &options.light_count, &options.lists, &options.grid}) {
         slot->binding = binding++;
         if (options.slots_given == 0 || bytes.byte() < 200) continue;
         slot->binding = take_number(bytes, 20), slot->set = take_number(bytes, 5);
@@ -178,7 +178,7 @@ bool deserve(std::int32_t error, const lightbin_cull_options& options) {
     const auto outside = [](std::int32_t number, std::int32_t last) { return number < 0 || number > last; };
     switch (error) {
     case LIGHTBIN_NOT_A_VALUE:
-        return outside(options.language, 7) || outside(options.pass, 8) || outside(options.kind, 2) ||
+        return outside(options.language, 7) || outside(options.pass, 4) || outside(options.kind, 2) ||
                outside(options.ids, 2) || outside(options.depth_test, 3) || outside(options.slicing, 2);
     case LIGHTBIN_NO_STORAGE_BUFFERS:
         return options.language == LIGHTBIN_GLSL_330 || options.language == LIGHTBIN_ESSL_300;
@@ -189,7 +189,8 @@ bool deserve(std::int32_t error, const lightbin_cull_options& options) {
     case LIGHTBIN_NO_SPLIT_BOX_SHADER:
         return options.depth_test == LIGHTBIN_SPLIT_BOX;
     case LIGHTBIN_NO_SUCH_SLICING_SHADER:
-        return options.slicing == LIGHTBIN_CLUSTERS && options.depth_test == LIGHTBIN_INTERVAL;
+        return options.slicing == LIGHTBIN_Z_BINS ||
+               (options.slicing == LIGHTBIN_CLUSTERS && options.depth_test == LIGHTBIN_INTERVAL);
     default:
         return false;
     }
@@ -249,13 +250,10 @@ void check_plan(const lightbin_cull_plan& plan, const lightbin_cull_options& opt
     const auto whole_words = [](std::uint64_t bytes) {
         return std::max<std::uint64_t>((bytes + 3) / 4 * 4, 16);
     };
-    const bool binned = options.slicing == LIGHTBIN_Z_BINS;
     const std::uint64_t cells = options.slicing == LIGHTBIN_CLUSTERS ? tiles * slices : tiles;
     require(plan.tile_bytes == whole_words(8 * cells), "not the ranges of all cells");
     require(plan.list_bytes == whole_words(entries * (options.ids == LIGHTBIN_U16 ? 2 : 4)),
             "not all entries");
-    require(plan.order_bytes == (binned ? whole_words(4 * lights) : 0), "not all lights in order");
-    require(plan.bin_bytes == (binned ? whole_words(8 * slices) : 0), "not all bins");
     require(plan.scratch_bytes % 4 == 0 && plan.scratch_bytes / 4 <= 0xffffffff &&
                 plan.scratch_bytes >= 16 + 8 * lights + 8 * cells,
             "scratch memory without room, or that 32 bits do not address");
@@ -267,20 +265,9 @@ void check_plan(const lightbin_cull_plan& plan, const lightbin_cull_options& opt
             "lights without a thread");
 }
 
-/// Asks for the passes, a text and a plan that make lists on the GPU.
+/// Asks for a text and a plan that make lists on the GPU.
 void plan_lists_on_gpu(Bytes& bytes, const lightbin_allocator& allocator, const lightbin_view* view,
                        const lightbin_slices* slices, std::uint64_t tiles) {
-    const std::int32_t slicing = take_number(bytes, 3);
-    std::size_t count = 99;
-    const std::int32_t* const passes = lightbin_cull_passes(slicing, &count);
-    require((passes != nullptr) == (slicing >= 0 && slicing <= LIGHTBIN_Z_BINS) &&
-                count == (passes == nullptr            ? 0
-                          : slicing == LIGHTBIN_Z_BINS ? 9
-                                                       : 5),
-            "not five passes, or nine");
-    for (std::size_t i = 1; i < count; ++i)
-        require(passes[i] > passes[i - 1] && passes[i] <= LIGHTBIN_CULL_FILL, "passes out of order");
-
     std::string prefix;
     for (unsigned length = bytes.byte() % 8; prefix.size() < length;)
         prefix += static_cast<char>(bytes.byte() % 255 + 1);

@@ -392,16 +392,13 @@ std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) 
     const auto want = [&](bool condition, const char* name, ShaderSlot slot) {
         if (condition) wanted.push_back({name, slot});
     };
-    const bool project = pass == CullPass::project, fill = pass == CullPass::fill,
-               bins = pass == CullPass::bin_offsets || pass == CullPass::masks;
+    const bool project = pass == CullPass::project, fill = pass == CullPass::fill;
     want(project, "lights", options.lights);
     want((pass == CullPass::count || fill) && options.depth_test != DepthTest::none, "z_bounds",
          options.z_bounds);
     want(true, "scratch", options.scratch);
     want(project && options.slicing != Slicing::none, "slices", options.slices);
     want(project && options.count_in_buffer, "light_count", options.light_count);
-    want(bins, "bins", options.bins);
-    want(pass == CullPass::rank, "order", options.order);
     want(fill, "tiles", options.tiles);
     want(fill, "lists", options.lists);
     return wanted;
@@ -417,32 +414,24 @@ void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions&
     holds(made.tiles_x == columns && made.tiles_y == rows && made.slices == slices &&
               made.lights == room.lights && made.entries == room.entries,
           "a plan of something else");
-    const bool clusters = options.slicing == Slicing::clusters, binned = options.slicing == Slicing::z_bins;
-    const std::uint64_t cells = std::uint64_t{columns} * rows * (clusters ? slices : 1), lights = room.lights;
+    const std::uint64_t cells = std::uint64_t{columns} * rows * slices, lights = room.lights;
     const auto sized = [&](std::uint64_t bytes, std::uint64_t least) {
         holds(bytes % 4 == 0 && bytes >= 16 && bytes >= least && bytes < least + 20,
               "a buffer of another size");
     };
     sized(plan.bytes.tiles, 8 * cells);
     sized(plan.bytes.lists, std::uint64_t{room.entries} * static_cast<unsigned>(options.ids));
-    if (binned) {
-        sized(plan.bytes.order, 4 * lights);
-        sized(plan.bytes.bins, 8 * std::uint64_t{slices});
-    }
-    holds(binned || (plan.bytes.order == 0 && plan.bytes.bins == 0), "buffers of no use");
 
     // Arrays in `scratch` lie behind each other, with room for what docs/gpu.md says.
     const std::uint64_t words = plan.bytes.scratch / 4;
-    const std::uint64_t places[] = {4,           made.records, made.ranked, made.masks,      made.counts,
-                                    made.ranges, made.sums,    made.groups, made.bin_counts, words};
+    const std::uint64_t places[] = {made.masks, made.counts, made.ranges, made.sums, made.groups, words};
     holds(words < std::uint64_t{1} << 32, "more words than numbers");
     holds(std::is_sorted(std::begin(places), std::end(places)), "arrays that overlap");
-    holds(made.ranked - made.records >= 2 * lights && (!binned || made.masks - made.ranked >= 2 * lights),
-          "too little room for lights");
+    holds(made.masks >= 4 + 2 * lights, "too little room for lights");
     holds(made.ranges - made.counts >= cells * made.segments && made.sums - made.ranges >= 2 * cells,
           "too little room for cells");
-    const std::uint64_t blocks = std::uint64_t{made.blocks_x} * made.blocks_y *
-                                 (clusters ? ((slices - 1) >> made.slice_shift) + 1 : 1);
+    const std::uint64_t blocks =
+        std::uint64_t{made.blocks_x} * made.blocks_y * (((slices - 1) >> made.slice_shift) + 1);
     holds(blocks >= 1 && blocks <= 1024 && std::uint64_t{made.blocks_x} << made.block_shift >= columns &&
               std::uint64_t{made.blocks_y} << made.block_shift >= rows,
           "blocks that don't cover the tiles, or too many");
@@ -450,7 +439,7 @@ void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions&
     holds(made.segments >= 1 && made.segments <= 32 &&
               std::uint64_t{made.segments} * made.steps * 1024 >= lights,
           "segments that don't hold the lights");
-    for (const CullPass pass : cull_passes(options.slicing)) {
+    for (const CullPass pass : cull_passes) {
         const CullGroups groups = plan.groups_of(pass);
         holds(groups.x >= 1 && groups.y >= 1 && groups.x <= 65535 && groups.y <= 65535,
               "more work groups than devices have");
@@ -484,8 +473,7 @@ void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
                 entry = static_cast<double>(bytes.take<float>());
 
     std::set<ErrorCode> reasons;
-    if (sliced && count > (options.slicing == Slicing::z_bins ? 1024u : 65535u))
-        reasons.insert(ErrorCode::too_many_slices);
+    if (count > 65535) reasons.insert(ErrorCode::too_many_slices);
     if (options.ids == IdWidth::u16 && room.lights > 65536) reasons.insert(ErrorCode::too_many_lights);
     const auto plan = plan_cull(*view, options, room, sliced ? &*slices : nullptr,
                                 options.world_space ? &to_view : nullptr);
@@ -518,8 +506,8 @@ void fuzz_cull(Bytes& bytes) {
     options.slicing = static_cast<Slicing>((flags >> 3) % 3);
     options.count_in_buffer = (flags & 32) != 0;
     take_rest(bytes, options,
-              {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.bins,
-               &options.tiles, &options.light_count, &options.order, &options.lists, &options.grid},
+              {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.tiles,
+               &options.light_count, &options.lists, &options.grid},
               question);
     options.kind = take_enum(bytes, CullKind::box);
     options.ids = static_cast<IdWidth>(4u >> bytes.byte() % 3);
@@ -531,10 +519,11 @@ void fuzz_cull(Bytes& bytes) {
     if (options.kind == CullKind::box) question.reasons.insert(ErrorCode::no_cull_of_boxes);
     if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
     if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
-    if (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval)
+    if (options.slicing == Slicing::z_bins ||
+        (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval))
         question.reasons.insert(ErrorCode::no_such_slicing_shader);
     question.constants_in_block = true;
-    question.constants.resize(options.world_space ? 14 : 9);
+    question.constants.resize(options.world_space ? 13 : 8);
     question.wanted = buffers_of(pass, options);
     question.names = {"run"};
     const Result<ShaderText> made = cull_shader(pass, options);

@@ -85,16 +85,16 @@ test('both modules make the bytes of this machine\'s library', async () => {
         for (const options of [{language: 'wgsl'}, {language: 'essl-300', fragment: true}])
             assert.equal((await lightbin.reduceShader({...options, skipBackground: true})).text, text());
         const wide = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120, margin: 0.02});
-        for (const slicing of ['no-slicing', 'clusters', 'z-bins']) {
+        for (const slicing of ['no-slicing', 'clusters']) {
             const worldSpace = slicing !== 'clusters';
             const options = {language: 'wgsl', kind: 'spot', stride: 12, radius: 3, axis: 4, cosine: 7, worldSpace,
                              depthTest: 'box', slicing};
             const {bytes, constants, passes} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
                 ...slicing !== 'no-slicing' && {slices: wide}, ...worldSpace && {viewMatrix: camera}});
-            const {scratch, tiles, lists, order, bins} = bytes;
-            same(BigUint64Array.from([scratch, tiles, lists, order, bins], BigInt), `sizes, ${slicing}`);
+            const {scratch, tiles, lists} = bytes;
+            same(BigUint64Array.from([scratch, tiles, lists], BigInt), `sizes, ${slicing}`);
             same(constants, `constants, ${slicing}`);
-            assert.equal(passes.length, slicing === 'z-bins' ? 9 : 5);
+            assert.equal(passes.length, 5);
             for (const {pass, x, y} of passes) {
                 same(Uint32Array.of(x, y), `groups of ${pass}, ${slicing}`);
                 assert.equal((await lightbin.cullShader({...options, pass})).text, text());
@@ -664,8 +664,7 @@ test('shaders that reduce depth and make lists say what to bind', async () => {
     assert.equal(usual, float32);
     assert.notEqual(usual, unorm16);
     const fill = options => lightbin.cullShader({language, pass: 'fill', ...options});
-    const slots = {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3, lists: 3,
-                   grid: 4};
+    const slots = {lights: 0, zBounds: 0, scratch: 1, slices: 2, tiles: 2, lightCount: 3, lists: 3, grid: 4};
     const given = Object.fromEntries(Object.entries(slots).map(([name, binding]) => [name, {binding}]));
     assert.deepEqual(await fill({}), await fill({slots: given}));
     assert.deepEqual(await fill({}), await fill({slots: {}}));
@@ -676,7 +675,7 @@ test('shaders that reduce depth and make lists say what to bind', async () => {
 
 test('shaders that make lists of lights on the GPU say what they refuse', async () => {
     const [lightbin] = modules, options = {language: 'wgsl'}, room = {lights: 9, entries: 9};
-    const view = lightbin.view(square), slices = lightbin.linearSlices({count: 1025, begin: 1, end: 2000});
+    const view = lightbin.view(square), slices = lightbin.linearSlices({count: 65536, begin: 1, end: 2000});
     const {bindings} = await lightbin.cullShader({...options, pass: 'fill', slots: {lists: {binding: 7}}});
     assert.deepEqual(bindings.find(({name}) => name === 'lightbin_lists').slot, {binding: 7, set: 0});
     for (const pass of ['project', 'fill'])
@@ -687,7 +686,8 @@ test('shaders that make lists of lights on the GPU say what they refuse', async 
     const plan = (more, others = {}) => lightbin.planCull(view, {...options, ...more}, {...room, ...others});
     assert.deepEqual((await plan({})).passes.map(({pass}) => pass), ['project', 'count', 'sums', 'offsets', 'fill']);
     await assert.rejects(plan({slicing: 'clusters'}), {code: 'null-argument', message: /^slices: /});
-    await assert.rejects(plan({slicing: 'z-bins'}, {slices}), {code: 'too-many-slices'});
+    await assert.rejects(plan({slicing: 'z-bins'}, {slices}), {code: 'no-such-slicing-shader'});
+    await assert.rejects(plan({slicing: 'clusters'}, {slices}), {code: 'too-many-slices'});
     await assert.rejects(plan({}, {slices}), {code: 'not-read', message: /^slices: /});
     await assert.rejects(plan({worldSpace: true}), {code: 'null-argument', message: /^to_view: /});
     await assert.rejects(plan({ids: 'u16'}, {lights: 65537}), {code: 'too-many-lights'});

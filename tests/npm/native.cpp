@@ -191,11 +191,10 @@ int main(int count, char** names) {
     // What shaders that make the lists of lights on the GPU need, and their texts.
     lightbin_slices* wide_slices = nullptr;
     succeed(lightbin_slices_exponential(17, 1.5f, 120, 0.02f, nullptr, &wide_slices));
-    for (const int slicing : {LIGHTBIN_NO_SLICING, LIGHTBIN_CLUSTERS, LIGHTBIN_Z_BINS}) {
+    for (const int slicing : {LIGHTBIN_NO_SLICING, LIGHTBIN_CLUSTERS}) {
         lightbin_cull_options options = {};
         lightbin_cull_plan plan = {};
         const lightbin_matrix to_view = {nullptr, camera, LIGHTBIN_COLUMN_MAJOR, 0};
-        size_t passes = 0;
         options.size = sizeof options;
         options.language = LIGHTBIN_WGSL;
         options.kind = LIGHTBIN_CULL_SPOT;
@@ -206,14 +205,13 @@ int main(int count, char** names) {
         plan.size = sizeof plan;
         succeed(lightbin_plan_cull(view, &options, SPOTS, 9000, slicing == LIGHTBIN_NO_SLICING ? nullptr : wide_slices,
                                    options.world_space ? &to_view : nullptr, &plan));
-        write_block(&plan.scratch_bytes, 5 * sizeof plan.scratch_bytes);
+        write_block(&plan.scratch_bytes, 3 * sizeof plan.scratch_bytes);
         write_block(plan.constants, sizeof plan.constants);
-        const int32_t* const pass = lightbin_cull_passes(slicing, &passes);
-        for (size_t i = 0; i < passes; ++i) {
+        for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
             lightbin_shader* shader = nullptr;
-            options.pass = pass[i];
+            options.pass = pass;
             succeed(lightbin_cull_shader(&options, nullptr, &shader));
-            write_block(&plan.groups[pass[i]], sizeof plan.groups[0]);
+            write_block(&plan.groups[pass], sizeof plan.groups[0]);
             write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
             lightbin_shader_destroy(shader);
         }

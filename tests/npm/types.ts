@@ -26,8 +26,8 @@ export async function use(gl: WebGL2RenderingContext) {
     // @ts-expect-error
     await lightbin.cullShader({language: 'wgsl', pass: 'draw'});
     const room = {lights: 1, entries: 2, slices};
-    const {passes} = await lightbin.planCull(view, {language: 'wgsl', slicing: 'z-bins'}, room);
-    for (const {pass} of passes) await lightbin.cullShader({language: 'wgsl', pass, slicing: 'z-bins'});
+    const {passes} = await lightbin.planCull(view, {language: 'wgsl', slicing: 'clusters'}, room);
+    for (const {pass} of passes) await lightbin.cullShader({language: 'wgsl', pass, slicing: 'clusters'});
     // @ts-expect-error
     await lightbin.cullShader({language: 'wgsl', kind: 'box'});
     // @ts-expect-error

@@ -164,11 +164,11 @@ struct PrefixedTexts {
         }
         if (const auto made = reduce_shader(reduction)) reduce = version_line(language) + made->text;
         reduce_stage = reduction.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment;
-        for (const lightbin::CullPass pass : lightbin::cull_passes(lightbin::Slicing::z_bins)) {
+        for (const lightbin::CullPass pass : lightbin::cull_passes) {
             lightbin::CullShaderOptions cull;
             cull.language = language;
             cull.kind = lightbin::CullKind::spot;
-            cull.slicing = lightbin::Slicing::z_bins;
+            cull.slicing = lightbin::Slicing::clusters;
             cull.prefix = prefix;
             if (const auto made = cull_shader(pass, cull)) passes.push_back(version_line(language) + made->text);
         }

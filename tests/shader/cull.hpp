@@ -21,10 +21,10 @@ struct CullText {
 inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<CullText> every;
-    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters})
         for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
             for (unsigned switches = 0; switches < 64; ++switches)
-                for (const CullPass pass : cull_passes(slicing)) {
+                for (const CullPass pass : cull_passes) {
                     CullShaderOptions options;
                     options.language = language;
                     options.slicing = slicing;
@@ -63,8 +63,7 @@ struct CullCase {
 struct CulledGrid {
     lightbin::CullTotals totals = {};
     std::vector<lightbin::ListRange> tiles;
-    std::vector<std::uint32_t> lists, order;
-    std::vector<lightbin::BinRange> bins;
+    std::vector<std::uint32_t> lists;
     bool narrow = false;
     std::uint64_t tests = 0;  // of tiles: how often a light was compared with a tile
 
@@ -77,7 +76,7 @@ struct CulledGrid {
                    (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
         };
         return std::memcmp(&totals, &other.totals, sizeof totals) == 0 && same(tiles, other.tiles) &&
-               same(lists, other.lists) && same(order, other.order) && same(bins, other.bins);
+               same(lists, other.lists);
     }
     /// Of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
     std::uint64_t hash() const {
@@ -89,8 +88,6 @@ struct CulledGrid {
         add(std::span(&totals, 1));
         add(std::span(tiles));
         add(std::span(lists));
-        add(std::span(order));
-        add(std::span(bins));
         return hash;
     }
 };
@@ -125,8 +122,6 @@ inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
     blank("scratch", plan.bytes.scratch);
     blank("tiles", plan.bytes.tiles);
     blank("lists", plan.bytes.lists);
-    blank("order", plan.bytes.order);
-    blank("bins", plan.bytes.bins);
     return written;
 }
 
@@ -181,7 +176,7 @@ CulledGrid run_cull(Device& device, const CullCase& scene, TextChange change = a
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
     CullBuffers written = blank_buffers(plan);
-    run_passes(device, scene, plan, cull_passes(scene.options.slicing), written, change);
+    run_passes(device, scene, plan, cull_passes, written, change);
     CulledGrid grid;
     grid.narrow = scene.options.ids == IdWidth::u16;
     std::memcpy(&grid.totals, written["scratch"].data(), sizeof grid.totals);
@@ -189,11 +184,6 @@ CulledGrid run_cull(Device& device, const CullCase& scene, TextChange change = a
     std::memcpy(grid.tiles.data(), written["tiles"].data(), grid.tiles.size() * 8);
     grid.lists = written["lists"];
     if (scene.options.slicing == Slicing::none) grid.tests = count_tests(plan.constants, written["scratch"]);
-    if (scene.options.slicing == Slicing::z_bins) {
-        grid.order = written["order"];
-        grid.bins.resize((written["bins"].size() - 16) / 2);
-        std::memcpy(grid.bins.data(), written["bins"].data(), grid.bins.size() * 8);
-    }
     return grid;
 }
 
@@ -235,7 +225,7 @@ inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expecte
         for (std::uint32_t i = 0; i < range.count; ++i) {
             const std::uint32_t id = grid.id(range.offset + i);
             if (i > 0 && id <= grid.id(range.offset + i - 1)) ++tally.wrong;
-            own.push_back(grid.order.empty() ? id : grid.order[id]);
+            own.push_back(id);
         }
         std::sort(own.begin(), own.end());
         const auto wanted = expected.of(cell);

@@ -7,23 +7,16 @@
 
 #include <type_traits>
 
-/// A Binner's lists, with lights by ascending id. With z-bins the ids are ranks, which are looked up.
+/// A Binner's lists.
 template <lightbin::Options options, class Lights>
-BuiltLists binned_by_id(const BuiltScene& scene, const Lights& lights, lightbin::LightCounts& counts) {
+BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::LightCounts& counts) {
     lightbin::Binner<options> binner;
     const auto grid =
         *binner.bin(scene.view, lights, lightbin::inputs_for<options>(scene.bounds, scene.slices));
     counts = grid.light_counts();
     const auto ranges = grid.ranges();
     const auto ids = grid.ids();
-    BuiltLists lists{{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}, grid.slices()};
-    if (options.slicing != lightbin::Slicing::z_bins) return lists;
-    for (const lightbin::ListRange& range : lists.tiles) {
-        const auto begin = lists.ids.begin() + range.offset, end = begin + range.count;
-        std::transform(begin, end, begin, [&](std::uint32_t rank) { return grid.ranks().order[rank]; });
-        std::sort(begin, end);
-    }
-    return lists;
+    return {{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}, grid.slices()};
 }
 
 /// Returns a text whose quotients are off by 3 units in the last place and whose roots are by 5, more than the
@@ -80,8 +73,7 @@ public:
 
     template <class Device> bool run(Device& device) {
         using enum lightbin::DepthTest;
-        constexpr auto tiles = lightbin::Slicing::none, clusters = lightbin::Slicing::clusters,
-                       z_bins = lightbin::Slicing::z_bins;
+        constexpr auto tiles = lightbin::Slicing::none, clusters = lightbin::Slicing::clusters;
         smallest_and_largest(device);
         short_of_room(device);
         beyond_32_bits(device);
@@ -95,14 +87,12 @@ public:
         ways<CullWay<box, tiles>>(device, "box");
         ways<CullWay<box, clusters>>(device, "clusters and box");
         ways<CullWay<box, clusters, true>>(device, "clusters and box, world space");
-        ways<CullWay<none, z_bins>>(device, "z-bins");
-        ways<CullWay<box, z_bins>>(device, "z-bins and box");
-        ways<CullWay<interval, z_bins, true>>(device, "z-bins and interval, world space");
+        ways<CullWay<interval, tiles, true>>(device, "interval, world space");
         constexpr int one_size[] = {16};
         ways<MaxOnly<CullWay<interval, tiles>>>(device, "interval, maximum only", one_size);
-        ways<MaxOnly<CullWay<box, z_bins>>>(device, "z-bins and box, maximum only", one_size);
+        ways<MaxOnly<CullWay<box, tiles>>>(device, "box, maximum only", one_size);
         ways<WithMargin<CullWay<box, clusters>>>(device, "clusters and box, slices with a margin", one_size);
-        ways<WithMargin<CullWay<none, z_bins>>>(device, "z-bins with a margin", one_size);
+        ways<WithMargin<CullWay<none, clusters>>>(device, "clusters, slices with a margin", one_size);
         for (const TextChange change : {worst_up, worst_down, worst_anywhere}) {
             if (const lightbin::detail::Dialect dialect{language_}; dialect.hlsl || dialect.webgpu)
                 break;  // the changed lines are GLSL
@@ -188,7 +178,7 @@ private:
             const auto lights = cull_lights(size.lights == 32769 ? 1 : 2, size.lights, 3);
             LightCounts counts;
             const BuiltLists expected =
-                binned_by_id<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
+                binned<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
             const CulledGrid grid = make(device, simple(view, lights, 2 * expected.ids.size() + 1000));
             CullTally own = compare_lists(grid, expected);
             own.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size() ||
@@ -251,7 +241,7 @@ private:
                 counts[10] = 0xc0000000;
                 counts[other] = static_cast<std::uint32_t>(total - counts[10] - all * std::uint64_t{cells - 2});
                 CullBuffers written = blank_buffers(plan);
-                const auto passes = cull_passes(Slicing::none);
+                const std::span<const CullPass> passes = cull_passes;
                 run_passes(device, scene, plan, passes.first(2), written, as_it_is);
                 std::copy(counts.begin(), counts.end(), written["scratch"].begin() + plan.constants.counts);
                 run_passes(device, scene, plan, passes.subspan(2), written, as_it_is);
@@ -284,7 +274,7 @@ private:
             const auto lights = cull_lights(kind, 1500, 7);
             LightCounts counts;
             const BuiltLists expected =
-                binned_by_id<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
+                binned<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
             CullCase scene = simple(view, lights, expected.ids.size() + 100);
             scene.binners_margin = true;
             const CullTally own = compare_lists(make(device, scene), expected);
@@ -303,7 +293,7 @@ private:
         const BuiltScene scene{builder_view(0, 1920, 1080, 32, false), {}, *Slices::linear(1, 0, 1)};
         LightCounts counts;
         const auto compare = [&](const auto& lights, CullKind kind) {
-            const BuiltLists expected = binned_by_id<Options{}>(scene, lights, counts);
+            const BuiltLists expected = binned<Options{}>(scene, lights, counts);
             CullCase made{"ordinary lights",
                           scene.view,
                           {},
@@ -349,7 +339,7 @@ private:
         }
         LightCounts counts;
         using Way = CullWay<DepthTest::box, Slicing::clusters>;
-        const BuiltLists expected = binned_by_id<Way::options>(scene, spots, counts);
+        const BuiltLists expected = binned<Way::options>(scene, spots, counts);
         CullCase made = simple(scene.view, {}, 2 * expected.ids.size());
         made.lights = words_of(spots);
         made.count = static_cast<std::uint32_t>(spots.size());
@@ -402,39 +392,18 @@ private:
         if (Way::world_space) made.to_view = to_view();
         LightCounts counts;
         const BuiltLists expected = Way::world_space
-                                  ? binned_by_id<Way::options>(scene, world_space(lights, to_view()), counts)
-                                  : binned_by_id<Way::options>(scene, lights, counts);
+                                  ? binned<Way::options>(scene, world_space(lights, to_view()), counts)
+                                  : binned<Way::options>(scene, lights, counts);
         made.room = static_cast<std::uint32_t>(expected.ids.size() + expected.ids.size() + 30000);
         const CulledGrid grid = make(device, made);
         CullTally tally = compare_lists(grid, expected);
         tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
-        if constexpr (slicing == Slicing::z_bins) tally.wrong += wrong_in_order(grid);
         if (tally.missed + tally.wrong > 0) {
             tally.print((made.name + (spots ? ", spots" : ", spheres") + ", camera " +
                          std::to_string(camera) + ", tile " + std::to_string(tile_size))
                             .c_str());
         }
         return tally;
-    }
-
-    /// Counts what is wrong with the order of a grid with z-bins: lights that have two ranks, and lights that begin in
-    /// the same bin and whose ids do not ascend. The bin that a light begins in is told by the ranges of ranks: ranks
-    /// are sorted by it, so it is the first bin whose greatest rank is not below the light's.
-    static std::size_t wrong_in_order(const CulledGrid& grid) {
-        std::size_t wrong = 0;
-        const std::uint32_t visible = grid.totals.visible;
-        std::vector<std::uint32_t> sorted(grid.order.begin(), grid.order.begin() + visible);
-        std::sort(sorted.begin(), sorted.end());
-        wrong += std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
-        std::uint32_t end = 0;
-        for (const lightbin::BinRange& bin : grid.bins) {
-            const std::uint32_t begin = end;
-            if (bin.least <= bin.greatest) end = (std::max)(end, bin.greatest + 1);
-            if (end > visible) return wrong + 1;
-            for (std::uint32_t rank = begin + 1; rank < end; ++rank)
-                wrong += grid.order[rank] <= grid.order[rank - 1];
-        }
-        return wrong + (end != visible);
     }
 
     static lightbin::Matrix to_view() {

@@ -164,7 +164,7 @@ Real uintBitsToFloat(uint bits) {
 
 // What the text reads and writes. All texts have the same.
 std::vector<uint> lights, scratch;
-uvec4 grid, places;
+uvec4 grid;
 vec4 axis_x, axis_y, signs, planes, origin, column_x, column_y, column_z, origin_image;
 void mark(uint, uvec2, uvec2, uvec2) {}
 
@@ -180,10 +180,6 @@ void mark(uint, uvec2, uvec2, uvec2) {}
 #define world_grid grid
 #define flat_grid grid
 #define spot_grid grid
-#define sphere_places places
-#define world_places places
-#define flat_places places
-#define spot_places places
 #define sphere_axis_x axis_x
 #define world_axis_x axis_x
 #define flat_axis_x axis_x
@@ -227,7 +223,6 @@ using namespace lightbin;
 void set_constants(const ShaderCull& c, double margin) {
     const auto real = [](auto n) { return Real::exact(n); };
     grid = {c.tiles_x, c.tiles_y, 1, 0};
-    places = {0, 0, 0, 0};
     axis_x = {real(c.scale_x), real(c.offset_x),
               real(static_cast<float>(static_cast<double>(c.margin_x) * margin)), real(c.limit_x)};
     axis_y = {real(c.scale_y), real(c.offset_y),
@@ -313,7 +308,8 @@ Tally compare(const View& view, const CullShaderOptions& options, const std::vec
     set_constants(plan.constants, margin);
     lights.resize(made.size() * sizeof(Light) / 4);
     std::memcpy(lights.data(), made.data(), made.size() * sizeof(Light));
-    scratch.resize(made.size() * 2);
+    constexpr uint totals = sizeof(CullTotals) / 4;  // before the records
+    scratch.resize(totals + made.size() * 2);
     Tally tally;
     for (const Rounding way :
          {Rounding::nearest, Rounding::up, Rounding::down, Rounding::either, Rounding::anywhere}) {
@@ -328,7 +324,7 @@ Tally compare(const View& view, const CullShaderOptions& options, const std::vec
                 flat_project(id, 0);
             else
                 sphere_project(id, 0);
-            const uint first = scratch[2 * id], last = scratch[2 * id + 1];
+            const uint first = scratch[totals + 2 * id], last = scratch[totals + 2 * id + 1];
             ++tally.rectangles;
             tally.lost += (first & 0xffff) > expected.x0[i] || first >> 16 > expected.y0[i] ||
                           (last & 0xffff) < expected.x1[i] || last >> 16 < expected.y1[i];

@@ -84,7 +84,7 @@ test('the list check is magenta where a list lacks a light, and nowhere else', a
         await page.close();
         return found;
     };
-    for (const lists of ['', '&renderer=webgpu', '&renderer=webgpu&method=z_bins']) {
+    for (const lists of ['', '&renderer=webgpu']) {
         const few = 'lights=16&view=2&size=20&tile=16&look=check&move=0' + lists;
         assert.equal(await magenta(await browser.open(t, few)), 0, few);
         assert.ok(await magenta(await browser.open(t, few + '&drop=3')) > 10, few);

@@ -95,7 +95,7 @@ function sentences() {
 // What the GPU lists lights by: as many cells as the CPU's table has ranges, and memory for each buffer.
 async function plans_for_gpu() {
     const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]};
-    for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
+    for (const method of ['none', 'interval', 'box', 'clusters']) {
         const frame = await lighting.gpu_frame({...seen, method}, 5000, 7000), {plans, lights, shapes, edges} = frame;
         const bounds = {min: new Float32Array(920), max: new Float32Array(920).fill(60)};
         const {ranges, slices} = lighting.frame({...seen, method}, bounds);

@@ -120,6 +120,19 @@ test('without WebGPU it can\'t be chosen, and the reason is given', async t => {
     assert.deepEqual(page.complaints, []);
 });
 
+test('WebGPU has no z-bins, and the reason is given', async t => {
+    const page = await browser.open(t, small + '&renderer=webgpu&method=z_bins');
+    await wait_for_text(page, 'refused', /^Z-bins can't be had in WebGPU/);
+    assert.ok(await page.locator('#method option[value=z_bins]').isDisabled());
+    assert.equal(await page.locator('#method').inputValue(), 'clusters');
+    await page.locator('#advise').click();
+    assert.ok(await page.locator('#advice button', {hasText: 'z-bins'}).first().isDisabled());
+    await page.locator('#renderer').selectOption('webgl');
+    await wait_for_text(page, 'refused', /^$/);
+    assert.ok(!await page.locator('#method option[value=z_bins]').isDisabled());
+    assert.deepEqual(page.complaints, []);
+});
+
 test('without float targets there are no Z bounds, and the reason is given', async t => {
     const page = await browser.open(t, small + '&method=box', {before: () => {
         const get_extension = WebGL2RenderingContext.prototype.getExtension;

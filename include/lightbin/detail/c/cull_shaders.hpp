@@ -43,10 +43,8 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
         known.z_bounds = slot_of(given.z_bounds);
         known.scratch = slot_of(given.scratch);
         known.slices = slot_of(given.slices);
-        known.bins = slot_of(given.bins);
         known.tiles = slot_of(given.tiles);
         known.light_count = slot_of(given.light_count);
-        known.order = slot_of(given.order);
         known.lists = slot_of(given.lists);
         known.grid = slot_of(given.grid);
     }
@@ -59,8 +57,6 @@ inline void write_plan(const CullPlan& made, lightbin_cull_plan* plan) {
     known.scratch_bytes = made.bytes.scratch;
     known.tile_bytes = made.bytes.tiles;
     known.list_bytes = made.bytes.lists;
-    known.order_bytes = made.bytes.order;
-    known.bin_bytes = made.bytes.bins;
     static_assert(sizeof known.groups == sizeof made.groups);
     std::memcpy(known.groups, made.groups, sizeof made.groups);
     static_assert(sizeof known.constants >= sizeof made.constants);
@@ -72,21 +68,6 @@ inline void write_plan(const CullPlan& made, lightbin_cull_plan* plan) {
 }  // namespace lightbin
 
 extern "C" {
-
-const std::int32_t* lightbin_cull_passes(std::int32_t slicing, std::size_t* count) {
-    static constexpr std::int32_t lists[] = {LIGHTBIN_CULL_PROJECT, LIGHTBIN_CULL_COUNT, LIGHTBIN_CULL_SUMS,
-                                             LIGHTBIN_CULL_OFFSETS, LIGHTBIN_CULL_FILL},
-                                  bins[] = {LIGHTBIN_CULL_PROJECT,     LIGHTBIN_CULL_BIN_COUNTS,
-                                            LIGHTBIN_CULL_BIN_OFFSETS, LIGHTBIN_CULL_RANK,
-                                            LIGHTBIN_CULL_MASKS,       LIGHTBIN_CULL_COUNT,
-                                            LIGHTBIN_CULL_SUMS,        LIGHTBIN_CULL_OFFSETS,
-                                            LIGHTBIN_CULL_FILL};
-    if (count == nullptr) return nullptr;
-    *count = 0;
-    if (slicing < 0 || slicing > LIGHTBIN_Z_BINS) return nullptr;
-    *count = lightbin::cull_passes(static_cast<lightbin::Slicing>(slicing)).size();
-    return slicing == LIGHTBIN_Z_BINS ? bins : lists;
-}
 
 lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                      const lightbin_allocator* allocator, lightbin_shader** shader) {

@@ -60,10 +60,6 @@ LIGHTBIN_WITHOUT("LIGHTBIN_NO_REDUCE_SHADERS",
 #endif
 
 #if defined(LIGHTBIN_NO_CULL_SHADERS)
-const std::int32_t* lightbin_cull_passes(std::int32_t, std::size_t* count) {
-    if (count != nullptr) *count = 0;
-    return nullptr;
-}
 LIGHTBIN_WITHOUT("LIGHTBIN_NO_CULL_SHADERS",
                  lightbin_cull_shader(const lightbin_cull_options*, const lightbin_allocator*,
                                       lightbin_shader**))

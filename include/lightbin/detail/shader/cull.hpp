@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// cull_shader(): which text a pass has. The texts are in cull_project.hpp, cull_bins.hpp and cull_lists.hpp.
+// cull_shader(): which text a pass has. The texts are in cull_project.hpp and cull_lists.hpp.
 #pragma once
 
-#include <lightbin/detail/shader/cull_bins.hpp>
 #include <lightbin/detail/shader/cull_lists.hpp>
 #include <lightbin/detail/shader/cull_plan.hpp>
 #include <lightbin/detail/shader/cull_project.hpp>
@@ -18,18 +17,6 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
     switch (pass) {
     case CullPass::project:
         add_project(writer, options);
-        break;
-    case CullPass::bin_counts:
-        add_bin_counts(writer, options);
-        break;
-    case CullPass::bin_offsets:
-        add_bin_offsets(writer, options);
-        break;
-    case CullPass::rank:
-        add_rank(writer, options);
-        break;
-    case CullPass::masks:
-        add_masks(writer, options);
         break;
     case CullPass::sums:
         add_sums(writer, options);

@@ -10,7 +10,6 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 // Numbers that the texts and the plan share.
 inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< mask blocks: bits of 64 lights fill 8 KB of shared memory
-inline constexpr std::uint32_t cull_max_bins = 1024;      ///< z-bins: three words each fill 12 KB of shared memory
 inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a light's first and last slice, 16 bits each
 
 /// Returns the first error among the options, or nothing.
@@ -18,18 +17,19 @@ inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     return refuse_common(
         options,
-        {options.lights, options.z_bounds, options.scratch, options.slices, options.bins, options.tiles,
-         options.light_count, options.order, options.lists, options.grid},
+        {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
+         options.lists, options.grid},
         {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
          {options.kind == CullKind::box, {ErrorCode::no_cull_of_boxes}},
          {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
          {options.depth_test == DepthTest::split_box, {ErrorCode::no_split_box_shader}},
-         {clusters && options.depth_test == DepthTest::interval, {ErrorCode::no_such_slicing_shader}}});
+         {options.slicing == Slicing::z_bins || (clusters && options.depth_test == DepthTest::interval),
+          {ErrorCode::no_such_slicing_shader}}});
 }
 
 /// How many invocations a group of a pass has.
 constexpr unsigned cull_threads(CullPass pass) {
-    return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::bin_offsets ? 128 : 64;
+    return pass == CullPass::sums || pass == CullPass::offsets ? 128 : 64;
 }
 
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
@@ -40,11 +40,17 @@ inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
     return words + (options.kind == CullKind::spot ? 20u : 4u);
 }
 
+/// Returns the shader's expression for where the record of a light begins in `scratch`, from that for its id.
+inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
+    return std::to_string(sizeof(CullTotals) / 4) + "u + " + id + " * " + std::to_string(cull_record_words(options)) +
+           "u";
+}
+
 /// Declares the members of ShaderCull, without those that lights in view space don't need.
 inline void declare_cull_constants(ShaderWriter& writer, const CullShaderOptions& options) {
-    std::vector<ShaderConstant> constants = {{"uvec4", "grid"},     {"uvec4", "blocks"}, {"uvec4", "segments"},
-                                             {"uvec4", "places"},   {"uvec4", "more"},   {"vec4", "axis_x"},
-                                             {"vec4", "axis_y"},    {"vec4", "signs"},   {"vec4", "planes"}};
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
+                                             {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
+                                             {"vec4", "signs"},   {"vec4", "planes"}};
     if (options.world_space)
         for (const char* name : {"origin", "column_x", "column_y", "column_z", "origin_image"})
             constants.push_back({"vec4", name});
@@ -97,7 +103,7 @@ void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
 
 void $write_masks(uint number, uint thread) {
     uint words = 2u * $block_count();
-    uint begin = $places.z + number * words;
+    uint begin = $places.x + number * words;
     for (uint i = thread; i < words; i += 64u) { $scratch[begin + i] = atomicLoad(&$block_bits[i]); }
 }
 )");

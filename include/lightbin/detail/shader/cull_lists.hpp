@@ -126,13 +126,6 @@ uint $tiles_met(uint at, uvec2 corner, uint slice) {
                           "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n}\n"));
 }
 
-/// Returns the shader's expression for where a light's record begins in `scratch`, from that for its id or, with
-/// z-bins, its rank.
-inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
-    return (options.slicing == Slicing::z_bins ? "$places.y + " : "$places.x + ") + id + " * " +
-           std::to_string(cull_record_words(options)) + "u";
-}
-
 inline void declare_stage(ShaderWriter& writer) {
     writer.declare_shared("words", 32, false);         // the 32 words of the mask whose lights are staged
     writer.declare_shared("lights_in", 8, false);      // how many lights each of these words has, a byte each
@@ -154,7 +147,7 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
         for (uint i = 0u; i < 4u; i += 1u) {
             uint own = 0u;
             uint word = first + thread * 4u + i;
-            if (word < word_count) { own = $scratch[$places.z + word * mask_blocks + mask_block]; }
+            if (word < word_count) { own = $scratch[$places.x + word * mask_blocks + mask_block]; }
             $words[thread * 4u + i] = own;
             counts |= uint(bitCount(own)) << (i * 8u);
         }
@@ -288,12 +281,12 @@ void $run(uvec2 group, uint thread) {
     if (fill)
         writer.add(R"(    uint at = 0u;
     if (inside) {
-        uint range = $more.x + 2u * cell;
+        uint range = $places.z + 2u * cell;
         uint count = $scratch[range + 1u];
-        uint base = $sum($scratch[range], $scratch[$more.y + (cell >> 7u)]);
+        uint base = $sum($scratch[range], $scratch[$places.w + (cell >> 7u)]);
         uint begin = min(base, $grid.w);
         if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }
-        at = $sum(base, $scratch[$places.w + segment * cells + cell]);
+        at = $sum(base, $scratch[$places.y + segment * cells + cell]);
     }
 )");
     else
@@ -313,7 +306,7 @@ void $run(uvec2 group, uint thread) {
                      : "                count += 1u;\n") + "            }\n"
                              : std::string("            count += uint(bitCount(met));\n")) +
                "        }\n    }\n");
-    if (!fill) writer.add("    if (inside) { $scratch[$places.w + segment * cells + cell] = count; }\n");
+    if (!fill) writer.add("    if (inside) { $scratch[$places.y + segment * cells + cell] = count; }\n");
     writer.add("}\n");
 }
 
@@ -349,7 +342,7 @@ void $run(uvec2 group, uint thread) {
     uint count = 0u;
     if (cell < cells) {
         for (uint i = 0u; i < $segments.y; i += 1u) {
-            uint at = $places.w + i * cells + cell;
+            uint at = $places.y + i * cells + cell;
             uint own = $scratch[at];
             $scratch[at] = count;
             count += own;
@@ -359,10 +352,10 @@ void $run(uvec2 group, uint thread) {
     if (cell < cells) {
         uint before = 0u;
         if (thread > 0u) { before = $partial[thread - 1u]; }
-        $scratch[$more.x + 2u * cell] = before;
-        $scratch[$more.x + 2u * cell + 1u] = count;
+        $scratch[$places.z + 2u * cell] = before;
+        $scratch[$places.z + 2u * cell + 1u] = count;
     }
-    if (thread == 127u && number * 128u < cells) { $scratch[$more.y + number] = $partial[127]; }
+    if (thread == 127u && number * 128u < cells) { $scratch[$places.w + number] = $partial[127]; }
 }
 )");
 }
@@ -378,7 +371,7 @@ void $run(uvec2 group, uint thread) {
     uint sums = (cells + 127u) >> 7u;
     uint before = 0u;
     for (uint first = 0u; first < sums; first += 128u) {
-        uint at = $more.y + first + thread;
+        uint at = $places.w + first + thread;
         uint own = 0u;
         if (first + thread < sums) { own = $scratch[at]; }
         $scan(thread, own);
@@ -392,7 +385,7 @@ void $run(uvec2 group, uint thread) {
     uint rejected = 0u;
     uint visible = 0u;
     for (uint i = thread; i < groups; i += 128u) {
-        uint both = $scratch[$more.z + i];
+        uint both = $scratch[$segments.w + i];
         rejected += both & 0xffffu;
         visible += both >> 16u;
     }

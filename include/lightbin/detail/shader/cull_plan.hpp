@@ -18,7 +18,6 @@ namespace detail {
 
 inline constexpr std::uint32_t cull_group_row = 32768;  ///< the most work groups in x; more go on in y
 inline constexpr std::uint32_t cull_max_segments = 32;
-inline constexpr std::uint32_t cull_max_bin_segments = 64;
 
 /// Returns `dividend` / `divisor`, rounded up.
 constexpr std::uint32_t divided_up(std::uint64_t dividend, std::uint64_t divisor) {
@@ -31,11 +30,11 @@ inline CullGroups cull_groups(std::uint64_t count) {
 }
 
 /// Sets the columns and rows of mask blocks: 8x8 tiles each, or more where that would make too many.
-inline void plan_blocks(ShaderCull& to, bool clusters) {
+inline void plan_blocks(ShaderCull& to) {
     for (to.block_shift = 3, to.slice_shift = 0;;) {
         to.blocks_x = max_of(divided_up(to.tiles_x, 1u << to.block_shift), 1u);
         to.blocks_y = max_of(divided_up(to.tiles_y, 1u << to.block_shift), 1u);
-        const std::uint32_t layers = clusters ? divided_up(to.slices, 1u << to.slice_shift) : 1;
+        const std::uint32_t layers = divided_up(to.slices, 1u << to.slice_shift);
         if (to.blocks_x * to.blocks_y * layers <= cull_max_blocks) return;
         ++(to.blocks_x * to.blocks_y > 1 ? to.block_shift : to.slice_shift);
     }
@@ -89,29 +88,24 @@ inline void plan_transform(const FloatTransform& from, ShaderCull& to) {
 inline std::uint64_t plan_scratch(const CullShaderOptions& options, std::uint64_t cells, ShaderCull& to) {
     const std::uint64_t groups = max_of(divided_up(to.lights, 64), 1u),
                         record_words = cull_record_words(options) * 64 * groups,
-                        layers = options.slicing == Slicing::clusters ? divided_up(to.slices, 1u << to.slice_shift) : 1;
-    const bool binned = options.slicing == Slicing::z_bins;
-    std::uint64_t end = sizeof(CullTotals) / 4;
+                        layers = divided_up(to.slices, 1u << to.slice_shift);
+    std::uint64_t end = sizeof(CullTotals) / 4 + record_words;
     const auto place = [&](std::uint64_t words) {
         const std::uint64_t begin = end;
         end += words;
         return static_cast<std::uint32_t>(begin);
     };
-    to.records = place(record_words);
-    to.ranked = place(binned ? record_words : 0);
     to.masks = place(2 * groups * to.blocks_x * to.blocks_y * layers);
     to.counts = place(cells * to.segments);
     to.ranges = place(2 * cells);
     to.sums = place(divided_up(cells, 128));
     to.groups = place(groups);
-    to.bin_counts = place(binned ? (to.bin_segments + std::uint64_t{1}) * to.slices : 0);
     return end;
 }
 
 /// Returns why the options or numbers of a plan are refused, or nothing.
 inline std::optional<Error> refuse_plan(const CullShaderOptions& options, const CullRoom& room, std::uint32_t slices) {
-    const std::uint32_t most = options.slicing == Slicing::z_bins ? cull_max_bins : cull_max_slices;
-    if (slices > most) return Error{ErrorCode::too_many_slices, slices, most};
+    if (slices > cull_max_slices) return Error{ErrorCode::too_many_slices, slices, cull_max_slices};
     if (options.ids == IdWidth::u16 && room.lights > 0x10000)
         return Error{ErrorCode::too_many_lights, room.lights, 0x10000};
     return {};
@@ -123,10 +117,10 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
                                   const Slices* slices, const Matrix* to_view) {
     using namespace detail;
     const DefaultFloatEnvironment environment;
-    const bool sliced = options.slicing != Slicing::none, clusters = options.slicing == Slicing::clusters;
-    LIGHTBIN_ASSERT((slices != nullptr) == sliced && (to_view != nullptr) == options.world_space);
-    const std::uint32_t slice_count = sliced ? static_cast<std::uint32_t>(slices->count()) : 1;
     if (const auto error = refuse_cull(options)) return *error;
+    const bool clusters = options.slicing == Slicing::clusters;
+    LIGHTBIN_ASSERT((slices != nullptr) == clusters && (to_view != nullptr) == options.world_space);
+    const std::uint32_t slice_count = clusters ? static_cast<std::uint32_t>(slices->count()) : 1;
     if (const auto error = refuse_plan(options, room, slice_count)) return *error;
     CullPlan plan;
     ShaderCull& to = plan.constants;
@@ -135,10 +129,10 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     to.slices = slice_count;
     to.entries = room.entries;
     to.lights = room.lights;
-    plan_blocks(to, clusters);
+    plan_blocks(to);
     plan_camera(camera_of(view), to);
     // Slices are widened by their own margin and by 5u, how far the GPU's results and the Binner's may differ.
-    if (sliced) to.slice_margin = float_above(static_cast<double>(table_of(*slices).margin) + 0x1p-20);
+    if (clusters) to.slice_margin = float_above(static_cast<double>(table_of(*slices).margin) + 0x1p-20);
     if (to_view != nullptr) {
         const WorldToView transform(*to_view);
         if (const auto refused = transform.refusal()) return Error{*refused};
@@ -147,31 +141,23 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     }
 
     // Where there are many cells, few segments of lights suffice to occupy a GPU.
-    const std::uint64_t tiles = std::uint64_t{to.tiles_x} * to.tiles_y, layers = clusters ? slice_count : 1,
-                        cells = tiles * layers;
+    const std::uint64_t tiles = std::uint64_t{to.tiles_x} * to.tiles_y, cells = tiles * slice_count;
     const std::uint32_t steps = max_of(divided_up(to.lights, 1024), 1u),
                         groups = max_of(divided_up(to.lights, 64), 1u);
     const std::uint64_t wanted = max_of<std::uint64_t>((1u << 20) / max_of<std::uint64_t>(cells, 1), 1);
     to.steps = divided_up(steps, min_of<std::uint64_t>(wanted, cull_max_segments));
     to.segments = divided_up(steps, to.steps);
-    to.bin_segments = divided_up(groups, divided_up(groups, cull_max_bin_segments));
     const std::uint64_t words = plan_scratch(options, cells, to);
     if (words > 0xffffffff) return Error{ErrorCode::scratch_too_large, 4 * words, 4 * std::uint64_t{0xffffffff}};
 
     const auto size = [](std::uint64_t bytes) { return max_of<std::uint64_t>((bytes + 3) / 4 * 4, 16); };
-    const bool binned = options.slicing == Slicing::z_bins;
     plan.bytes = {size(4 * words), size(8 * cells),
-                  size(std::uint64_t{room.entries} * static_cast<unsigned>(options.ids)),
-                  binned ? size(4 * std::uint64_t{to.lights}) : 0, binned ? size(8 * std::uint64_t{slice_count}) : 0};
-    const std::uint64_t blocks = std::uint64_t{divided_up(to.tiles_x, 8)} * divided_up(to.tiles_y, 8) * layers;
+                  size(std::uint64_t{room.entries} * static_cast<unsigned>(options.ids))};
+    const std::uint64_t blocks = std::uint64_t{divided_up(to.tiles_x, 8)} * divided_up(to.tiles_y, 8) * slice_count;
     const auto set = [&](CullPass pass, std::uint64_t count) {
         plan.groups[static_cast<std::size_t>(pass)] = cull_groups(max_of<std::uint64_t>(count, 1));
     };
     set(CullPass::project, groups);
-    set(CullPass::bin_counts, to.bin_segments);
-    set(CullPass::bin_offsets, 1);
-    set(CullPass::rank, to.bin_segments);
-    set(CullPass::masks, groups);
     set(CullPass::count, blocks * to.segments);
     set(CullPass::sums, divided_up(cells, 128));
     set(CullPass::offsets, 1);

@@ -220,8 +220,7 @@ inline std::string cull_depth_record(const CullShaderOptions& options, const std
 
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) {
-    const bool sliced = options.slicing != Slicing::none,
-               marks = options.slicing != Slicing::z_bins, box = options.depth_test == DepthTest::box,
+    const bool sliced = options.slicing != Slicing::none, box = options.depth_test == DepthTest::box,
                spots = options.kind == CullKind::spot;
     const std::string depths = sliced ? "3u" : "2u";  // where in a record what the depth test reads begins
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
@@ -230,7 +229,7 @@ inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) 
     if (options.count_in_buffer) writer.declare_storage("light_count", "uint", "readonly", options.light_count, 4);
     writer.add("\n");
     writer.declare_shared("tally", 1, true);
-    if (marks) add_masks_of_group(writer, options);
+    add_masks_of_group(writer, options);
     add_state(writer, options);
     add_sphere(writer, options);
     if (!options.orthographic || spots) add_worst_operations(writer);
@@ -242,7 +241,7 @@ inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) 
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
     uint at = id * )" + std::to_string(options.lights_at.stride) + R"(u;
-    uint record = $places.x + id * )" + std::to_string(cull_record_words(options)) + R"(u;
+    uint record = )" + cull_record_of(options, "id") + R"(;
     uint state = $state_of(at);
     vec4 s = vec4(0.0, 0.0, 0.0, 1.0);
     if (state == 2u) {
@@ -279,8 +278,8 @@ uint $project(uint id, uint thread) {
 )" + (sliced ? "    uvec2 layers = $slices_of(z);\n    if (state == 1u) { layers = uvec2(0u, $slices[3]); }\n"
                        "    $scratch[record + 2u] = layers.x | (layers.y << 16u);\n"
              : "    uvec2 layers = uvec2(0u, 0u);\n") +
-               cull_depth_record(options, depths) +
-               (marks ? "    if (seen) { $mark(thread, columns, rows, layers); }\n" : "") + R"(    uint result = 0u;
+               cull_depth_record(options, depths) + R"(    if (seen) { $mark(thread, columns, rows, layers); }
+    uint result = 0u;
     if (seen) { result = 0x10000u; }
     if (state == 0u) { result = 1u; }
     return result;
@@ -290,21 +289,25 @@ void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
     uint id = number * 64u + thread;
     if (thread == 0u) { atomicStore(&$tally[0], 0u); }
-)" + (marks ? "    $clear_masks(thread);\n" : "") + R"(    sync_group();
+    $clear_masks(thread);
+    sync_group();
     uint given = )" +
                (options.count_in_buffer ? "$light_count[" + std::to_string(options.count_at) + "]" : "$segments.x") +
                R"(;
     if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
-        $scratch[$places.x + id * )" + std::to_string(cull_record_words(options)) + R"(u] = 1u;
-        $scratch[$places.x + id * )" + std::to_string(cull_record_words(options)) + R"(u + 1u] = 0u;
+        $scratch[)" + cull_record_of(options, "id") + R"(] = 1u;
+        $scratch[)" + cull_record_of(options, "id") + R"( + 1u] = 0u;
     }
     if (id == 0u) { $scratch[3] = given; }
     sync_group();
     uint groups = max(($segments.x + 63u) >> 6u, 1u);
     if (number < groups) {
-        if (thread == 0u) { $scratch[$more.z + number] = atomicLoad(&$tally[0]); }
-)" + (marks ? "        $write_masks(number, thread);\n" : "") + "    }\n}\n");
+        if (thread == 0u) { $scratch[$segments.w + number] = atomicLoad(&$tally[0]); }
+        $write_masks(number, thread);
+    }
+}
+)");
 }
 
 }}}  // namespace lightbin::detail
