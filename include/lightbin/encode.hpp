@@ -125,34 +125,6 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     return encoded;
 }
 
-/// The list of one tile, with a count for each kind of light: from index `offset` of the light index list on, the ids
-/// of `spheres` Spheres, then of `spots` Spots, then of `boxes` Boxes. 16 bytes, laid out as a GPU's uvec4.
-struct KindRange {
-    std::uint32_t offset, spheres, spots, boxes;
-};
-
-/// Writes a KindRange for each element of grid.ranges(): the same list, with the numbers of its Spheres, Spots and
-/// Boxes in place of one count. A shader made with ShaderOptions::split_kinds reads them in place of grid.ranges(): it
-/// has one loop for each kind, and asks no light for its kind. For a grid whose arrays lights() joined. Returns the
-/// part of `out` that was written. Errors, after which `out` is unchanged: the grid was made with Slicing::z_bins;
-/// `out` is smaller than grid.ranges().
-template <class Id>
-Result<std::span<const KindRange>> split_kinds(const LightGrid<Id>& grid, std::span<KindRange> out) {
-    if (!grid.ranks().bins.empty()) return Error{ErrorCode::kinds_of_ranks};
-    if (out.size() < grid.ranges().size())
-        return Error{ErrorCode::range_buffer_too_small, grid.ranges().size(), out.size()};
-    const std::uint32_t first_spot = grid.light_counts().first_spot, first_box = grid.light_counts().first_box;
-    KindRange* to = out.data();
-    for (const ListRange range : grid.ranges()) {
-        const Id *const begin = grid.ids().data() + range.offset, *const end = begin + range.count,
-                        *const spots = detail::first_not(begin, end, [&](Id id) { return id < first_spot; }),
-                        *const boxes = detail::first_not(spots, end, [&](Id id) { return id < first_box; });
-        *to++ = {range.offset, static_cast<std::uint32_t>(spots - begin), static_cast<std::uint32_t>(boxes - spots),
-                 static_cast<std::uint32_t>(end - boxes)};
-    }
-    return std::span<const KindRange>(out.data(), grid.ranges().size());
-}
-
 }}  // namespace lightbin
 
 #include <lightbin/detail/base/warnings_on.inl>

@@ -51,8 +51,6 @@ enum class ErrorCode : std::uint8_t {
     light_buffer_too_small,
     // encodings and shader text
     ids_too_narrow,
-    kinds_of_ranks,
-    kinds_without_table,
     list_buffer_too_small,
     bit_buffer_too_small,
     capacity_unknown,
@@ -150,10 +148,6 @@ inline constexpr const char* error_sentences[] = {
     "the buffer with one element per light has {available}, and {needed} lights were binned",
     // encodings and shader text
     "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
-    ("with z-bins ids are ranks, in order of depth, so a list is not ordered by kind: look each id up in the array "
-     "order, and compare what is there with first_spot and first_box"),
-    ("only lists with offsets and counts can be split into kinds: leave the option split_kinds off, and compare ids "
-     "with first_spot and first_box"),
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
     "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
     "sentinel lists need the option capacity, the lights a tile can hold",

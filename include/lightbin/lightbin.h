@@ -151,9 +151,7 @@ typedef enum lightbin_error {
     LIGHTBIN_IDS_ARE_RANKS = 150,
     LIGHTBIN_TOO_FEW_WEIGHTS = 151,
     LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 152,
-    LIGHTBIN_KINDS_OF_RANKS = 153,
     LIGHTBIN_VIEWS_OUT_OF_RANGE = 154,
-    LIGHTBIN_KINDS_WITHOUT_TABLE = 155,
     LIGHTBIN_NO_CULL_OF_BOXES = 156,
     LIGHTBIN_TOO_MANY_SLICES = 157,
     LIGHTBIN_VIEW_MATRIX_DISTORTS = 158,
@@ -743,18 +741,6 @@ LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const 
 LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries,
                                                     size_t capacity, uint32_t* listed);
 
-/* The list of one tile, with a count for each kind of light: from `offset` on the ids of so many spheres, then spots,
- * then boxes. 16 bytes, laid out as a GPU's uvec4. */
-typedef struct lightbin_kind_range {
-    uint32_t offset, spheres, spots, boxes;
-} lightbin_kind_range;
-
-/* Writes a lightbin_kind_range for each range of a grid, so that a shader has a loop for each kind and asks no light
- * for its kind. Errors: LIGHTBIN_KINDS_OF_RANKS, a grid with z-bins; LIGHTBIN_RANGE_BUFFER_TOO_SMALL, fewer elements
- * than grid->range_count. */
-LIGHTBIN_API lightbin_result lightbin_split_kinds(const lightbin_grid* grid, lightbin_kind_range* kinds,
-                                                  uint64_t capacity);
-
 /* Counts the lengths of a grid's lists. histogram[0] counts the lists without lights, histogram[k] those with 2^(k-1)
  * to 2^k - 1 lights. */
 LIGHTBIN_API lightbin_result lightbin_list_lengths(const lightbin_grid* grid, uint32_t* longest,
@@ -852,7 +838,6 @@ typedef struct lightbin_snippet_options {
     int32_t slots_given;          /* 0: the slots are the bindings 0 to 5 of set 0 in the order below */
     lightbin_slot tiles, lists, grid, slices, bins, view;
     uint32_t views; /* how many views' lists lie one after another in the buffers, up to 512; 0: 1 */
-    int32_t split_kinds; /* the ranges are what lightbin_split_kinds() writes; adds `for_each_of_kind` */
 } lightbin_snippet_options;
 
 /* A shader text and the resources to bind for it. */
@@ -868,9 +853,8 @@ typedef struct lightbin_shader lightbin_shader;
  * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
  * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
  * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_MAX_LIGHTS_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
- * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_KINDS_OF_RANKS,
- * LIGHTBIN_KINDS_WITHOUT_TABLE; LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS,
- * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
+ * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
+ * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
                                                      const lightbin_allocator* allocator,
                                                      lightbin_shader** shader);

@@ -44,10 +44,6 @@ struct ShaderOptions {
     /// that read lists take the number of the pixel's view, counted from 0, as their last parameter.
     std::uint32_t views = 1;
 
-    /// The buffer of tiles holds a KindRange for each tile, as split_kinds() writes them, in place of {offset, count}.
-    /// Adds the loop `for_each_of_kind` over the lights of one kind. Needs ListEncoding::offset_count, and no z_bins.
-    bool split_kinds = false;
-
     int tile_size = 0;             ///< in pixels, a literal in the shader text; 0: read from the shader constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
@@ -135,7 +131,6 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     lightbin_cursor lightbin_begin(uvec2 pixel, float view_depth);  // a cursor before the pixel's first light
 ///     bool lightbin_next(inout lightbin_cursor cursor);   // moves on to the next light; false: there is none
 ///     #define lightbin_for_each_light(cursor, pixel, view_depth)      // a loop over the pixel's lights
-///     #define lightbin_for_each_of_kind(cursor, kind, pixel, view_depth)    // with split_kinds: see below
 ///     uint lightbin_count(uvec2 pixel, float view_depth);             // with heat_map: the number of lights
 ///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // and as a colour from blue to red (`most`)
 ///     float lightbin_window(float apart, float range);                // with window: see light_window()
@@ -166,15 +161,6 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 /// With wave_loop, `begin` and `next` step through the lights of the whole wave, so what depends on the id alone is
 /// uniform in it; cursor.own tells whether the lane's own list contains the light. No `else` can follow the loop body,
 /// and in WGSL the text must come first in its module.
-///
-/// With split_kinds, lightbin_for_each_of_kind loops over the lights of one kind, so no branch has to tell kinds apart.
-/// The kind is 0 for Spheres, 1 for Spots and 2 for Boxes. In WGSL, lightbin_begin_kind(kind, pixel, view_depth)
-/// returns the cursor for the written-out loop.
-///
-///     lightbin_for_each_of_kind(light, 0u, pixel, depth) { colour += shade_point(light.id); }
-///     lightbin_for_each_of_kind(light, 1u, pixel, depth) { colour += shade_spot(light.id - first_spot); }
-///
-/// The loops may have the same name for the cursor: in HLSL the text switches off fxc's warning X3078 of it.
 ///
 /// With several views (options.views is 2 or more), every function and loop above that takes a pixel, except `tile`,
 /// takes the number of the pixel's view, a uint, as its last parameter:

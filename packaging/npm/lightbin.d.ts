@@ -209,7 +209,7 @@ export interface Grid extends Counts {
     /** Ids below firstSpot are spheres, from there to firstBox spots, others boxes. */
     readonly firstSpot: number, firstBox: number;
     /** Writes the lists in another format; with 'offset-count' the ids alone, which `ranges` still index. The data hold
-     * until the next encode(), append() or splitKinds() of the binner, or until the module's memory grows. */
+     * until the binner's next encode() or append(), or until the module's memory grows. */
     encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
     /**
      * Writes the lists of several views, this grid's first, one view after another, for shaders made with
@@ -218,11 +218,6 @@ export interface Grid extends Counts {
      * Order and bins of z-bins are not appended. The arrays hold as the data of encode() do.
      */
     append(...others: Grid[]): {ranges: Uint32Array, ids: Uint32Array | Uint16Array};
-    /**
-     * Returns {offset, spheres, spots, boxes}, four numbers a list, which shaders made with ShaderOptions.splitKinds
-     * read in place of `ranges`. Not with z-bins. They hold as the data of encode() do.
-     */
-    splitKinds(): Uint32Array;
     /** Returns how many lights the longest list has. histogram[0] counts the lists without lights, histogram[k] those
      * with 2 ** (k - 1) to 2 ** k - 1 lights, up to k = 32. */
     listLengths(): {longest: number, histogram: number[]};
@@ -284,8 +279,6 @@ export interface ShaderOptions {
     viewCheck?: boolean;
     /** The number of views whose lists Grid.append() wrote one after another. */
     views?: number;
-    /** The ranges are what Grid.splitKinds() returns. */
-    splitKinds?: boolean;
     listCheck?: boolean;
     window?: boolean;
     pushConstants?: boolean;

@@ -595,14 +595,6 @@ class Lists {
             return {data: new Uint8Array(c.memory.buffer, to, bytes), tilesCut, entriesCut, capacityNeeded};
         });
     }
-    splitKinds() {
-        const core = this.#core, {rangeCount} = this.#raw;
-        return core.scope(c => {
-            const grid = this.#placed(), to = this.#encoded.reserve(16 * rangeCount);
-            core.check(c.lightbin_split_kinds, grid, to, BigInt(rangeCount));
-            return new Uint32Array(c.memory.buffer, to, 4 * rangeCount);
-        });
-    }
     append(...others) {
         const core = this.#core, grids = [this, ...others];
         for (const grid of others) {

@@ -509,7 +509,6 @@ static void test_grids(void) {
     const lightbin_coverage* coverage = NULL;
     static uint32_t entries[light_count];
     static float weights[light_count];
-    static lightbin_kind_range kinds[tile_count];
     static lightbin_range ranges[2 * tile_count];
     uint32_t *ids, listed = 0, sum = 0;
     size_t count = 0, i;
@@ -551,14 +550,6 @@ static void test_grids(void) {
     for (i = 0; i < light_count; ++i)
         sum += entries[i];
     CHECK(sum == grid.id_count && listed == count);
-
-    CHECK(refuses(lightbin_split_kinds(&grid, NULL, 9), LIGHTBIN_NULL_ARGUMENT, "kinds"));
-    CHECK(lightbin_split_kinds(&grid, kinds, tile_count - 1).error == LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_split_kinds(&grid, kinds, tile_count).error == LIGHTBIN_OK);
-    for (i = 0; i < tile_count; ++i) {
-        CHECK(kinds[i].offset == grid.ranges[i].offset && kinds[i].boxes == 0);
-        CHECK(kinds[i].spheres + kinds[i].spots == grid.ranges[i].count);
-    }
 
     CHECK(refuses(lightbin_budget_create(NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "budget"));
     CHECK(lightbin_budget_create(NULL, &budget).error == LIGHTBIN_OK);

@@ -200,16 +200,6 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
     CHECK(listed == *count_entries(expected, std::span<std::uint32_t>(cpp_entries)));
     CHECK(entries == cpp_entries);
 
-    std::vector<KindRange> cpp_kinds(cells);
-    std::vector<lightbin_kind_range> kinds(cells);
-    const auto cpp_split = split_kinds(expected, std::span<KindRange>(cpp_kinds));
-    const lightbin_result split = lightbin_split_kinds(&grid, kinds.data(), kinds.size());
-    REQUIRE((split.error == LIGHTBIN_OK) == cpp_split.has_value());
-    if (cpp_split)
-        CHECK(equal(*cpp_split, kinds.data(), kinds.size()));
-    else
-        CHECK(split.error == LIGHTBIN_KINDS_OF_RANKS);
-
     std::vector<float> weights;
     for (std::size_t i = 0; i < lights; ++i)
         weights.push_back(static_cast<float>(random.integer(0, 9)));
@@ -664,7 +654,6 @@ TEST_CASE("C: shader texts and their data are those of C++") {
                 options.heat_map = 1, options.max_tiles = 64, options.max_entries = 512,
                 options.max_slices = 8;
                 options.views = language % 2 == 0 ? 0 : 3;
-                options.split_kinds = slicing != LIGHTBIN_Z_BINS;
                 options.prefix = "mine_", options.slots_given = slicing == 0;
                 const lightbin_slot slots[] = {{6, 0}, {5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}};
                 options.tiles = slots[0], options.lists = slots[1], options.grid = slots[2],
@@ -673,7 +662,6 @@ TEST_CASE("C: shader texts and their data are those of C++") {
                                              .storage = static_cast<ListStorage>(storage),
                                              .slicing = static_cast<Slicing>(slicing),
                                              .views = language % 2 == 0 ? 1u : 3u,
-                                             .split_kinds = slicing != LIGHTBIN_Z_BINS,
                                              .heat_map = true,
                                              .max_tiles = 64,
                                              .max_entries = 512,

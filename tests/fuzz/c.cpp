@@ -90,8 +90,6 @@ void use_grid(const lightbin_grid& grid, lightbin_budget* budget, lightbin_grid_
     std::uint32_t listed = 0;
     if (succeeded(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed)))
         require(listed <= grid.lights - grid.rejected - grid.culled, "lights in lists that are not in view");
-    std::vector<lightbin_kind_range> kinds(grid.range_count);
-    succeeded(lightbin_split_kinds(&grid, kinds.data(), kinds.size()));
     std::vector<float> weights(bytes.flag() ? grid.lights : bytes.byte());
     for (float& weight : weights)
         weight = static_cast<float>(bytes.byte());

@@ -291,7 +291,6 @@ void fuzz_snippet(Bytes& bytes) {
     options.list_check = (more_flags & 4) != 0;
     options.window = (more_flags & 8) != 0;
     if ((more_flags & 16) != 0) take_slot(bytes, options.view);
-    options.split_kinds = (more_flags & 32) != 0;
     for (const ShaderSlot slot : {options.slices, options.bins, options.view})
         question.slots.push_back(slot);
 
@@ -311,8 +310,6 @@ void fuzz_snippet(Bytes& bytes) {
               ErrorCode::no_byte_address_buffers);
     refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
               ErrorCode::no_wave_operations);
-    refuse_if(options.split_kinds && options.slicing == Slicing::z_bins, ErrorCode::kinds_of_ranks);
-    refuse_if(options.split_kinds && !table, ErrorCode::kinds_without_table);
     refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
     refuse_if(options.storage == ListStorage::texture_2d &&
                   (options.texture_width == 0 || options.texture_width > 16384),
@@ -334,7 +331,7 @@ void fuzz_snippet(Bytes& bytes) {
         language.hlsl ? std::min(options.uniform_block_bytes, 65536u) : options.uniform_block_bytes;
     const auto too_large = [&](double size) { return std::ceil(size / 16) * 16 > question.block_bytes; };
     const double slices = options.max_slices;
-    refuse_if((tiles_in_block && too_large((options.split_kinds ? 16 : 8) * tiles)) ||
+    refuse_if((tiles_in_block && too_large(8 * tiles)) ||
                   (lists_in_block && too_large(list_bytes)) ||
                   (lists_in_block && sliced && too_large(4 * (slices + 3))) ||
                   (lists_in_block && binned && too_large(8 * slices)),
@@ -347,7 +344,6 @@ void fuzz_snippet(Bytes& bytes) {
     if (binned) question.wanted.push_back({"bins", options.bins});
     question.names = {"tile", "cursor", "begin", "next"};
     if (!language.wgsl) question.names.push_back("for_each_light");
-    if (options.split_kinds) question.names.push_back("begin_kind");
     if (options.heat_map) question.names.insert(question.names.end(), {"count", "heat"});
     if (options.view_check) question.names.push_back("check_view(");
     if (options.list_check) question.names.push_back(language.wgsl ? "next_missing(" : "for_each_missing(");

@@ -250,8 +250,6 @@ void use_view(Hash& hash, const View& view) {
     use_lights(hash, view, boxes, bounds);
     use_lights(hash, view, lights(spots, boxes), bounds);
     use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(hash, view, all, bounds);
-    std::vector<KindRange> kinds(view.tile_count());
-    hash.add(value_of(split_kinds(value_of(binner.bin(view, all)), kinds)).back().boxes);
     while (weights.size() < spheres.size() + spots.size() + boxes.size())
         weights.push_back(1);
     use_coverage(hash, view, all, weights);

@@ -29,7 +29,6 @@ std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
     const bool multiview = block.find("gl_ViewID_OVR") != std::string::npos;
     const auto snippet = lightbin::shader_snippet({.language = language,
                                                    .views = multiview ? 2u : 1u,
-                                                   .split_kinds = block.find("for_each_of_kind") != std::string::npos,
                                                    .view_check = true,
                                                    .list_check = true,
                                                    .window = true});

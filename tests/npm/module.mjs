@@ -449,11 +449,10 @@ test('a viewport without pixels has no lists', () => {
         const view = lightbin.view({...square, width: 0}), binner = lightbin.binner();
         const grid = binner.bin(view, {spheres: {array: random_spheres(9)}});
         assert.deepEqual([grid.lights, grid.ranges.length, grid.ids.length, view.info.tilesX], [9, 0, 0, 0]);
-        assert.equal(grid.splitKinds().length, 0);
+        assert.equal(grid.encode({encoding: 'sentinel', capacity: 2}).data.length, 0);
         view.update({width: 320});
         assert.equal(binner.bin(view, {spheres: {array: [0, 0, -5, 1]}}).ranges.length, 800);
         for (const made of [view, binner]) made.dispose();
-        assert.equal(grid.splitKinds().length, 0);
         assert.equal(lightbin.allocations, 0);
     }
 });
@@ -607,27 +606,14 @@ test('the lists of several views, one view after another', async () => {
     assert.match(text, /lightbin_begin\(highp uvec2 pixel, highp float view_depth, highp uint view\)/);
 });
 
-test('kinds are counted in each list', () => {
+test('ids of spots follow those of spheres', () => {
     for (const lightbin of modules) {
         const view = lightbin.view(square), binner = lightbin.binner(), spheres = random_spheres(90);
         const spots = Float32Array.from({length: 8 * 60},
             (_, i) => i % 8 < 4 ? spheres[4 * (i >> 3) + i % 8] : [0.1, -1, 0.2, 0.8][i % 4]);
         const grid = binner.bin(view, {spheres: {array: spheres}, spots: {array: spots}});
         assert.deepEqual([grid.firstSpot, grid.firstBox], [90, 150]);
-        const kinds = grid.splitKinds();
-        let seen = 0;
-        for (const [tile, list] of lists_of(grid).entries()) {
-            const count = list.filter(id => id < 90).length;
-            seen += list.length - count;
-            assert.deepEqual([...kinds.subarray(4 * tile, 4 * tile + 4)],
-                [grid.ranges[2 * tile], count, list.length - count, 0]);
-        }
-        assert.ok(seen > 0 && kinds.length === 2 * grid.ranges.length);
-        const sorted = lightbin.binner({slicing: 'z-bins'});
-        const slices = lightbin.linearSlices({count: 4, begin: 1, end: 9});
-        const ranks = sorted.bin(view, {spheres: {array: spheres}}, {slices});
-        assert.throws(() => ranks.splitKinds(), {name: 'LightbinError', code: 'kinds-of-ranks'});
-        for (const made of [view, binner, sorted, slices]) made.dispose();
+        for (const made of [view, binner]) made.dispose();
         assert.equal(lightbin.allocations, 0);
     }
 });

@@ -46,7 +46,7 @@ inline std::uint32_t checked_lights(std::uint32_t width) {
     return width > 100 ? 8 : 3000;
 }
 
-/// How many lights there are. With ranges for each kind, the first third are Spheres, the second Spots, the rest Boxes.
+/// How many lights there are.
 inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) {
     using lightbin::IdWidth;
     return options.format.encoding == lightbin::ListEncoding::bitmask ? options.format.max_lights
@@ -55,25 +55,13 @@ inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) 
                                                                       : 100000;
 }
 
-/// Lines that loop over a pixel's list, or over its lights of each kind. `loop` begins a loop over the whole list,
-/// `kind_loop` one over the lights of kind `@`. Where an id is not of its loop's kind, they add to `hash`.
-inline std::string reader_loops(const lightbin::ShaderOptions& options, const std::string& loop,
-                                const std::string& kind_loop, std::uint32_t width) {
-    const std::string body = R"(        hash = (hash ^ light.id) * 16777619u;
+/// Lines that loop over a pixel's list. `loop` begins the loop.
+inline std::string reader_loop(const std::string& loop, std::uint32_t width) {
+    return loop + R"(        hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
         if (light.id < )" + std::to_string(checked_lights(width)) +
-                             "u) { listed += light.id + 1u; }\n";
-    if (!options.split_kinds) return loop + body + "    }\n";
-    const std::uint32_t of_kind = reader_light_count(options) / 3;
-    std::string text;
-    for (std::uint32_t kind = 0; kind < 3; ++kind) {
-        const std::string number = std::to_string(kind) + "u", begin = std::to_string(kind * of_kind) + "u",
-                          end = std::to_string(kind < 2 ? (kind + 1) * of_kind : 0xffffffff) + "u";
-        text += lightbin::detail::replaced(kind_loop, "@", number) + body + "        if (light.id - " +
-                begin + " >= " + end + " - " + begin + ") { hash += 512u; }\n    }\n";
-    }
-    return text;
+           "u) { listed += light.id + 1u; }\n    }\n";
 }
 
 /// The scales of the projection of reader_job(), and how far to the side in NDC each view is from the one before it.
@@ -164,8 +152,7 @@ inline std::string reader_glsl(const lightbin::ShaderOptions& options, const lig
     highp uint count = 0u;
     highp uint listed = 0u;
 )" +
-            reader_loops(options, "    " + prefix + "for_each_light(light, pixel, depth" + view + ") {\n",
-                         "    " + prefix + "for_each_of_kind(light, @, pixel, depth" + view + ") {\n", width);
+            reader_loop("    " + prefix + "for_each_light(light, pixel, depth" + view + ") {\n", width);
     if (options.heat_map)
         text += "    if (" + prefix + "count(pixel, depth" + view + ") != count || " + prefix +
                 "heat(pixel, depth, 8.0" + view + ").x > 1.0) hash += 1u;\n";

@@ -90,8 +90,7 @@ inline std::string reader_wgsl(const lightbin::ShaderOptions& options, const lig
     var count = 0u;
     var listed = 0u;
 )" +
-        reader_loops(options, "    var light = $begin(" + arguments + "\n    while ($next(&light))" + body,
-                     "    for (var light = $begin_kind(@, " + arguments + " $next(&light);)" + body, width) +
+        reader_loop("    var light = $begin(" + arguments + "\n    while ($next(&light))" + body, width) +
         wgsl_checks(options, width) + R"(    let tile = $tile(pixel);
     return vec4u(tile.x + (tile.y << 16u), count, hash, sum);
 }

@@ -5,15 +5,12 @@
 #include "reader_glsl.hpp"
 #include "reader_wgsl.hpp"
 
-#include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
-#include <lightbin/spot.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -42,7 +39,6 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.view_check, "view check");
     option(options.list_check, "list check");
     option(options.views > 1, "two views");
-    option(options.split_kinds, "kinds");
     return name;
 }
 
@@ -148,32 +144,8 @@ inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::Shader
     return every;
 }
 
-/// Why a text for these lists can't have ranges for each kind of light, or nothing: it must have them.
-inline std::optional<lightbin::ErrorCode> refusal_of_kinds(const lightbin::ShaderOptions& list) {
-    if (list.slicing == lightbin::Slicing::z_bins) return lightbin::ErrorCode::kinds_of_ranks;
-    if (list.format.encoding != lightbin::ListEncoding::offset_count)
-        return lightbin::ErrorCode::kinds_without_table;
-    return {};
-}
-
-/// The lists whose tiles have a range for each kind of light; every second one has wave loops, if the language and the
-/// device (`waves`) have them, and every third one two views.
-inline std::vector<lightbin::ShaderOptions> every_list_of_kinds(lightbin::ShaderLanguage language,
-                                                                lightbin::Slicing slicing, bool waves) {
-    std::vector<lightbin::ShaderOptions> every;
-    for (lightbin::ShaderOptions list : every_list(language, slicing)) {
-        if (refusal_of_kinds(list)) continue;
-        list.split_kinds = true;
-        list.views = every.size() % 3 == 2 ? 2 : 1;
-        list.wave_loop = waves && every.size() % 2 == 1;
-        if (!shader_snippet(list)) list.wave_loop = false;
-        every.push_back(list);
-    }
-    return every;
-}
-
 /// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between
-/// them have every switch on and off; with wave loops one, with two views one, with ranges for each kind one.
+/// them have every switch on and off; with wave loops one, with two views one.
 inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<lightbin::ShaderOptions> every;
@@ -189,8 +161,6 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
         for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, true))
-            every.push_back(with_switches(list, ++turn % switch_count));
-        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, true))
             every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
@@ -232,7 +202,6 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
     Input input;
     input.binding = binding;
     const std::vector<std::uint32_t> slices = lightbin::shader_slices(reader_slices());
-    std::vector<lightbin::KindRange> kinds(grid.ranges().size());
     std::span<const std::byte> data = lists;
     if (name.starts_with("grid"))
         data = std::as_bytes(std::span(&constants, 1));
@@ -243,7 +212,7 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
     else if (name.starts_with("image"))
         data = std::as_bytes(views);
     else if (name.starts_with("tiles"))
-        data = options.split_kinds ? std::as_bytes(*split_kinds(grid, kinds)) : std::as_bytes(grid.ranges());
+        data = std::as_bytes(grid.ranges());
     else if (name.starts_with("slices"))
         data = std::as_bytes(std::span(slices));
     else if (name.starts_with("bins"))
@@ -271,18 +240,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     constexpr Options of_binner = {.slicing = slicing};
     const Slices slices = reader_slices();
     std::vector<Binner<of_binner>> binners(options.views);
-    const std::size_t in_all = reader_light_count(options), of_kind = in_all / 3;
-    const std::vector<Sphere> spheres = reader_lights(in_all);
-    std::vector<Spot> spots;
-    std::vector<Box> boxes;
-    for (std::size_t i = of_kind; options.split_kinds && i < in_all; ++i) {
-        const auto [x, y, z, radius] = spheres[i];
-        if (i < 2 * of_kind)
-            spots.push_back({x, y, z, radius, 0, -1, 0, 0.3f});
-        else
-            boxes.push_back(
-                {x, y, z, radius, x, y, z, {{radius, 0, 0}, {0, radius, 0}, {0, 0, 0.3f * radius}}});
-    }
+    const std::vector<Sphere> spheres = reader_lights(reader_light_count(options));
     std::vector<View> views;
     std::vector<ShaderView> view_constants;
     std::vector<LightGrid<std::uint32_t>> grids;
@@ -295,10 +253,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
                                                {.tile_size = screen.tile_size}));
         view_constants.push_back(shader_view(views.back()));
         const auto inputs = inputs_for<of_binner>({}, slices);
-        grids.push_back(
-            options.split_kinds
-                ? *binner.bin(views.back(), lights(std::span(spheres).first(of_kind), spots, boxes), inputs)
-                : *binner.bin(views.back(), spheres, inputs));
+        grids.push_back(*binner.bin(views.back(), spheres, inputs));
         bins.insert(bins.end(), grids.back().ranks().bins.begin(), grids.back().ranks().bins.end());
     }
     // The views' grids one after another.
@@ -400,8 +355,7 @@ struct ReaderRun {
     }
 };
 
-/// Every list of two views, and some of those with ranges for each kind of light, drawn by multiview in fragment shaders;
-/// the other options take turns.
+/// Every list of two views, drawn by multiview in fragment shaders; the other options take turns.
 inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<ReaderRun> runs;
@@ -415,17 +369,14 @@ inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) 
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, false))
             add(list);
-        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, false))
-            if (list.views > 1) add(list);
     }
     return runs;
 }
 
-/// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
-/// the other options take turns, and now and then the
-/// constants are not set. At the large screen: one width of ids. With slicing, wave loops, two views or ranges for each
-/// kind: flipped in compute shaders, not flipped in fragment shaders, or where there are only those in both, at two
-/// small screens in turns.
+/// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen; the other
+/// options take turns, and now and then the constants are not set. At the large screen: one width of ids. With slicing,
+/// wave loops or two views: flipped in compute shaders, not flipped in fragment shaders, or where there are only those
+/// in both, at two small screens in turns.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
 /// waves      the device has what wave loops need
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
@@ -444,8 +395,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
             if (turn == 3) runs.push_back({with_switches(list, 2 * (place % 8) + flip), stage, screen, true});
         };
-        const bool few =
-            list.slicing != Slicing::none || list.wave_loop || list.views > 1 || list.split_kinds;
+        const bool few = list.slicing != Slicing::none || list.wave_loop || list.views > 1;
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
@@ -460,8 +410,6 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
                 lists.push_back(list);
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, waves))
-            lists.push_back(list);
-        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, waves))
             lists.push_back(list);
         for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)

@@ -85,35 +85,4 @@ TEST_CASE("too many lights in all arrays together are refused") {
     CHECK(grid.error().needed == 0x12000);
 }
 
-TEST_CASE("split_kinds() counts the lights of each kind") {
-    const View view = test::view({640, 360}, 32);
-    const test::Kinds kinds = test::random_kinds(200, 150, 100, 13);
-    Binner<> binner;
-    const auto grid = binner.bin(view, lights(kinds.spheres, kinds.spots, kinds.boxes));
-    REQUIRE(grid);
-    std::vector<KindRange> ranges(grid->ranges().size());
-    CHECK(split_kinds(*grid, std::span(ranges).first(5)).error().code == ErrorCode::range_buffer_too_small);
-    const auto split = split_kinds(*grid, ranges);
-    REQUIRE(split);
-    std::uint64_t of_boxes = 0;
-    for (std::size_t cell = 0; cell < ranges.size(); ++cell) {
-        const auto list = grid->ids().subspan(grid->ranges()[cell].offset, grid->ranges()[cell].count);
-        const auto below = [&](std::size_t end) {
-            return static_cast<std::uint32_t>(
-                std::count_if(list.begin(), list.end(), [&](auto id) { return id < end; }));
-        };
-        const KindRange& range = (*split)[cell];
-        CHECK(range.offset == grid->ranges()[cell].offset);
-        CHECK(range.spheres == below(200));
-        CHECK(range.spheres + range.spots == below(350));
-        CHECK(range.spheres + range.spots + range.boxes == list.size());
-        of_boxes += range.boxes;
-    }
-    CHECK(of_boxes > 0);
-    Binner<Options{.slicing = Slicing::z_bins}> ranked;
-    const auto by_rank = ranked.bin(view, lights(kinds.spheres, kinds.spots), {.slices = *Slices::linear(4, 1, 50)});
-    REQUIRE(by_rank);
-    CHECK(split_kinds(*by_rank, ranges).error().code == ErrorCode::kinds_of_ranks);
-}
-
 }  // namespace

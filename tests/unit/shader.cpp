@@ -167,42 +167,6 @@ TEST_CASE("several views: functions that read lists take the view's number, and 
     CHECK(shader_snippet(block)->bindings.back().bytes == 2 * 7 * sizeof(BinRange));
 }
 
-TEST_CASE("split_kinds: tiles are KindRanges, there is a loop over one kind, and without it no trace") {
-    constexpr auto all_on = [](bool split, ShaderLanguage language = ShaderLanguage::glsl_430,
-                               std::uint32_t views = 1) {
-        return ShaderOptions{.language = language,
-                             .slicing = Slicing::clusters,
-                             .views = views,
-                             .split_kinds = split,
-                             .heat_map = true,
-                             .wave_loop = true,
-                             .list_check = true};
-    };
-    for (const char* absent : {"kind", "spots", "boxes", "place *="})
-        CHECK(!has(text_of(all_on(false)), absent));
-    const std::string split = text_of(all_on(true));
-    for (const char* present : {"lightbin_begin_kind(uint kind, uvec2 pixel, float view_depth)",
-                                "#define lightbin_for_each_of_kind(cursor, kind, pixel, view_depth)",
-                                "c.end = c.boxes + others.y;"})
-        CHECK(has(split, present));
-    CHECK(has(text_of(all_on(true, ShaderLanguage::hlsl_5_1, 2)),
-              "lightbin_begin_kind(kind, pixel, view_depth, view)"));
-    CHECK(
-        has(text_of(all_on(true, ShaderLanguage::wgsl)), "fn lightbin_begin_kind(kind : u32, pixel : vec2u"));
-
-    // A KindRange is two elements of `tiles`: a block has 16 bytes for each tile, and a texture has rows as the lists'.
-    const auto tiles_of = [](const ShaderOptions& options) { return shader_snippet(options)->bindings[1]; };
-    CHECK(tiles_of({.tiles_in_uniform_block = true, .split_kinds = true, .max_tiles = 5}).bytes ==
-          5 * sizeof(KindRange));
-    CHECK(tiles_of({.storage = ListStorage::texture_2d, .split_kinds = true, .texture_width = 512}).width ==
-          512);
-    CHECK(2 * tiles_of({.split_kinds = true}).stride == sizeof(KindRange));
-
-    CHECK(has(refusal({.slicing = Slicing::z_bins, .split_kinds = true}), "ranks"));
-    CHECK(has(refusal({.format = {.encoding = ListEncoding::sentinel, .capacity = 4}, .split_kinds = true}),
-              "offsets and counts"));
-}
-
 TEST_CASE("a negative slot is refused with its sign, in every language and by every generator") {
     const auto sentence = [](const Result<ShaderText>& made) {
         return made ? std::string("taken") : made.error().message();

@@ -245,21 +245,6 @@ lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t*
     });
 }
 
-lightbin_result lightbin_split_kinds(const lightbin_grid* grid, lightbin_kind_range* kinds,
-                                     std::uint64_t capacity) {
-    using namespace lightbin::c;
-    static_assert(sizeof(lightbin::KindRange) == sizeof(lightbin_kind_range));
-    if (kinds == nullptr && capacity > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "kinds");
-    return with_grid(grid, "grid", [&](const auto& from) {
-        if (overlaps(from, {kinds, lightbin::detail::product_of_sizes(capacity, sizeof *kinds)}))
-            return refused(LIGHTBIN_OVERLAP, "kinds");
-        const auto made =
-            split_kinds(from, std::span<lightbin::KindRange>(reinterpret_cast<lightbin::KindRange*>(kinds),
-                                                             static_cast<std::size_t>(capacity)));
-        return made ? succeeded() : refused(made.error());
-    });
-}
-
 lightbin_result lightbin_list_lengths(const lightbin_grid* grid, std::uint32_t* longest,
                                       std::uint64_t* histogram) {
     using namespace lightbin::c;

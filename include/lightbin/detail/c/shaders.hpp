@@ -134,7 +134,6 @@ lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
     known.push_constants = given.push_constants != 0;
     if (given.texture_width != 0) known.texture_width = given.texture_width;
     if (given.views != 0) known.views = given.views;
-    known.split_kinds = given.split_kinds != 0;
     known.max_tiles = given.max_tiles;
     known.max_entries = given.max_entries;
     known.max_slices = given.max_slices;

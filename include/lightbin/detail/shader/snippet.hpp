@@ -71,8 +71,6 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
              {options.storage == ListStorage::byte_address && !dialect.hlsl, {ErrorCode::no_byte_address_buffers}},
              {options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
               {ErrorCode::no_wave_operations}},
-             {options.split_kinds && options.slicing == Slicing::z_bins, {ErrorCode::kinds_of_ranks}},
-             {options.split_kinds && format.encoding != ListEncoding::offset_count, {ErrorCode::kinds_without_table}},
              {options.views < 1 || options.views > max_views,
               {ErrorCode::views_out_of_range, options.views, max_views}},
              {options.tile_size < 0,
@@ -95,8 +93,6 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const TexelFormat texel = one_id && format.ids == IdWidth::u8    ? TexelFormat::r8ui
                               : one_id && format.ids == IdWidth::u16 ? TexelFormat::r16ui
                                                                      : TexelFormat::r32ui;
-    // A KindRange is two elements of `tiles`: {offset, spheres} and {spots, boxes}.
-    const bool split = options.split_kinds;
     const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
     const std::uint32_t width = textures ? options.texture_width : 0;
     // With several views, functions that read a view's lists or constants take the view's number as last parameter.
@@ -104,13 +100,11 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const std::string view_parameter = several ? ", uint view" : "", view_argument = several ? ", view" : "",
                       is_view = several ? " && view < " + std::to_string(options.views) + "u" : "";
     const std::string of_list = "(uvec2 pixel, float view_depth" + view_parameter + ") {\n",
-                      list_arguments = "(pixel, view_depth" + view_argument + ")",
-                      of_kind = "(uint kind, " + of_list.substr(1),
-                      kind_arguments = "(kind, " + list_arguments.substr(1);
+                      list_arguments = "(pixel, view_depth" + view_argument + ")";
     std::vector<ShaderBuffer> buffers;
     if (table)
         buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
-                           TexelFormat::rg32ui, (split ? 16ull : 8ull) * options.max_tiles, split ? width : 0});
+                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
     buffers.push_back({"lists", resource, options.lists, texel,
                        encoded_bytes(format, options.max_tiles, options.max_entries), width});
     if (sliced)
@@ -181,13 +175,11 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     // nothing: the constants may be unset, or describe a smaller image or other tiles.
     writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
     if (bits) writer.add("    uint bits;\n");
-    if (split) writer.add("    uint spots;\n    uint boxes;\n");
     if (binned) writer.add("    uint last;\n");
     writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
                "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
                (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
     if (bits) writer.add("    c.bits = 0u;\n");
-    if (split) writer.add("    c.spots = 0u;\n    c.boxes = 0u;\n");
     if (binned) writer.add("    c.last = 0u;\n");
     writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
                is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
@@ -201,17 +193,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (binned) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
     const std::string each = std::to_string(elements_per_tile(format)) + "u";
-    if (split)
-        writer.add(R"(        place *= 2u;
-        uint second = place + 1u;
-        uvec2 list = $tiles[place];
-        uvec2 others = $tiles[second];
-        c.at = list.x;
-        c.spots = list.x + list.y;
-        c.boxes = c.spots + others.x;
-        c.end = c.boxes + others.y;
-)");
-    else if (table)
+    if (table)
         writer.add("        uvec2 list = " +
                    (textures && !options.tiles_in_uniform_block
                         ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
@@ -263,31 +245,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (binned) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
 
-    if (split)
-        writer.add("\n$own_cursor $own_begin_kind" + of_kind + "    $own_cursor c = $own_begin" + list_arguments + R"(;
-    if (kind == 0u) { c.end = c.spots; }
-    if (kind == 1u) {
-        c.at = c.spots;
-        c.end = c.boxes;
-    }
-    if (kind > 1u) { c.at = c.boxes; }
-    return c;
-}
-)");
-
     // The cursor of a wave. The wave's next light is the least id among the next lights of its lanes.
-    const auto begin_wave = [&](const std::string& name, const std::string& parameters, const std::string& arguments) {
-        writer.add("\n$cursor $" + name + parameters + R"(    $cursor c;
-    c.id = 0u;
-    c.own = false;
-    $own_cursor ahead = $own_)" + name + arguments + R"(;
-    c.more = $own_next(&ahead);
-    c.ahead = ahead;
-    return c;
-}
-)");
-    };
-    if (options.wave_loop) {
+    if (options.wave_loop)
         writer.add(R"(
 struct $cursor {
     uint id;
@@ -295,10 +254,16 @@ struct $cursor {
     bool more;
     $own_cursor ahead;
 };
-)");
-        begin_wave("begin", of_list, list_arguments);
-        if (split) begin_wave("begin_kind", of_kind, kind_arguments);
-        writer.add(R"(
+
+$cursor $begin)" + of_list + R"(    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    $own_cursor ahead = $own_begin)" + list_arguments + R"(;
+    c.more = $own_next(&ahead);
+    c.ahead = ahead;
+    return c;
+}
+
 bool $next(inout $cursor c) {
     $own_cursor ahead = c.ahead;
     if (c.own) { c.more = $own_next(&ahead); }
@@ -310,18 +275,10 @@ bool $next(inout $cursor c) {
     return c.id != 0xffffffffu;
 }
 )");
-    }
-    const std::string loop_end = options.wave_loop ? "; $next(cursor);) if (cursor.own)\n" : "; $next(cursor);)\n";
     if (!dialect.webgpu)
         writer.add("\n#define $for_each_light(cursor, pixel, view_depth" + view_argument +
-                   ") for ($cursor cursor = $begin" + list_arguments + loop_end);
-    // A loop for each kind, all with the same name for the cursor: fxc takes the cursor to live on after its loop, and would
-    // warn of the next one's.
-    if (dialect.hlsl && split)
-        writer.add("#if !defined(__hlsl_dx_compiler)\n#pragma warning(disable : 3078)\n#endif\n");
-    if (!dialect.webgpu && split)
-        writer.add("#define $for_each_of_kind(cursor, kind, pixel, view_depth" + view_argument +
-                   ") for ($cursor cursor = $begin_kind" + kind_arguments + loop_end);
+                   ") for ($cursor cursor = $begin" + list_arguments +
+                   (options.wave_loop ? "; $next(cursor);) if (cursor.own)\n" : "; $next(cursor);)\n"));
     if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
         writer.add("\nuint $count" + of_list + "    $own_cursor c = $own_begin" + list_arguments + ";\n" +
                    std::string(table && !binned ? "    return c.end - c.at;\n"
