@@ -96,8 +96,8 @@ struct LightLists : osg::Camera::DrawCallback {
         // Made anew each frame, which costs nothing beside the lists: no change of lens or window is missed.
         const auto view = lightbin::View::from_projection(camera.getProjectionMatrix(), size);
         if (!view) fail(view.error().message());
-        const auto lists =
-            binner.bin(*view, lightbin::world_space(lights, camera.getViewMatrix(), &Light::sphere));
+        const auto to_sphere = [](const Light& light) { return light.sphere; };
+        const auto lists = binner.bin(*view, lightbin::world_space(lights, camera.getViewMatrix(), to_sphere));
         if (!lists) fail(lists.error().message());
 
         tiles.fill(lists->ranges());

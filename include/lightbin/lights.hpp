@@ -16,21 +16,13 @@ template <class Light, class ToLight> struct Lights {
     std::optional<detail::WorldToView> to_view;
 
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
-    static constexpr detail::LightKind kind = detail::kind_of<
-        decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>()))>;
+    static constexpr detail::LightKind kind = detail::kind_of<detail::MadeBy<ToLight, Light>>;
 
-    /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array. An element
-    /// that is a null pointer gives a light that is skipped as bad input, unless to_light itself takes pointers.
+    /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
     auto made(const Light& light) const {
         using Made = std::conditional_t<kind == detail::LightKind::box, Box,
                                         std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
-        if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
-            if (!light) {
-                Made bad = {};
-                bad.radius = -detail::infinity;
-                return bad;
-            }
-        return static_cast<Made>(detail::make_light(to_light, light));
+        return static_cast<Made>(to_light(light));
     }
 
     /// Writes what made() returns of the elements first..first + count - 1 of the array.
@@ -79,38 +71,19 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
-/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned.
-/// The array was moved into `array`.
-template <class Range, class ToLight> struct OwnedLights {
-    Range array;
-    ToLight to_light;
-    std::optional<detail::WorldToView> to_view;
-};
-
 /// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where
-/// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object, but not
-/// the elements that a temporary std::span or another borrowed range (std::ranges::borrowed_range) refers to.
+/// it is, so it must live until the Binner's call returns: a temporary array is refused by a compile error, unless it is
+/// a std::span or another range that only refers to elements (std::ranges::borrowed_range).
 ///
-/// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
-/// to_light  a callable or a pointer to a member that makes a Sphere, a Spot or a Box of an element. If it does not take
-///           an element itself, it is called with the object that the element points to, and a null pointer is bad
-///           input. A to_light that takes pointers is called with null pointers, too. It is copied, and called as
-///           const.
+/// lights    a contiguous range of any type
+/// to_light  a callable that makes a Sphere, a Spot or a Box of an element. It is copied, and called as const
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
-    constexpr bool temporary = !std::is_lvalue_reference_v<Range> &&
-                               !std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
-                   movable = std::is_move_constructible_v<Range>;
-    static_assert(!temporary || movable,
-                  "lightbin: these lights are gone after the expression and can't be moved: give the array a "
-                  "name that lives on");
+    static_assert(std::is_lvalue_reference_v<Range> || std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
+                  "lightbin: these lights are gone after the expression: give the array a name that lives on");
     const auto array = detail::checked_array(lights);
     const auto checked = detail::checked_to_light<typename decltype(array)::value_type>(to_light);
-    using Checked = std::remove_const_t<decltype(checked)>;
-    if constexpr (temporary && movable)
-        return OwnedLights<std::remove_cv_t<Range>, Checked>{static_cast<Range&&>(lights), checked, {}};
-    else
-        return Lights<typename decltype(array)::value_type, Checked>{array, checked, {}};
+    return Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{array, checked, {}};
 }
 
 /// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and enlarged by a
@@ -143,12 +116,6 @@ template <class Light, class ToLight>
 const Lights<Light, ToLight>& as_lights(const Lights<Light, ToLight>& lights) {
     return lights;
 }
-template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, ToLight>& lights) {
-    auto result = view_space(lights.array, lights.to_light);
-    result.to_view = lights.to_view;
-    return result;
-}
-
 template <class First, class Rest>
 const JoinedLights<First, Rest>& as_lights(const JoinedLights<First, Rest>& lights) {
     return lights;
@@ -202,7 +169,7 @@ template <class Light, class ToLight> const void* as_they_are(const Lights<Light
         if (lights.array.empty()) return nullptr;
         if constexpr (std::is_base_of_v<Sphere, Light>) {
             return lights.array.data();
-        } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4Of<Light, float>) {
+        } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4<Light>) {
             const void* const array = lights.array.data();
             const float* const numbers = static_cast<const float*>(array);
             const Light& first = lights.array.front();

@@ -197,7 +197,6 @@ void use_view(Hash& hash, const View& view) {
 
     std::vector<Sphere> spheres;
     std::vector<glm::vec4> vectors;
-    std::vector<const glm::vec4*> pointers;
     std::vector<Lamp> lamps;
     for (int i = 0; i < 200; ++i) {
         const int x = i * 37 % 101 - 50, y = i * 53 % 61 - 30, z = -(i * 29 % 83);
@@ -206,8 +205,6 @@ void use_view(Hash& hash, const View& view) {
         vectors.emplace_back(x, y, z, radius);
         lamps.push_back({{1.0 * x, 1.0 * y, 1.0 * z}, static_cast<double>(radius)});
     }
-    for (const glm::vec4& vector : vectors)
-        pointers.push_back(&vector);
     const auto to_light = [](const Lamp& lamp) {
         return Sphere{static_cast<float>(lamp.position[0]), static_cast<float>(lamp.position[1]),
                       static_cast<float>(lamp.position[2]), static_cast<float>(lamp.reach)};
@@ -257,7 +254,7 @@ void use_view(Hash& hash, const View& view) {
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
     use_lights(hash, view, view_space(lamps, to_light), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);
-    use_lights(hash, view, world_space(pointers, camera, to_spot), bounds);
+    use_lights(hash, view, world_space(vectors, camera, to_spot), bounds);
     use_lights(hash, view, world_space(lamps, identity, to_light), bounds);
 }
 
