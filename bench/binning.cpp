@@ -348,7 +348,7 @@ void add_set(const std::string& name, float median, double footprint, bool quick
             if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
                 add_rungs(set, tile);
             if (tile == 32 && n == 10000) add_builds<Options{.ids = IdWidth::u16}>(set, tile, "-u16");
-            if (tile == 32 && (n == 256 || n >= 10000)) add_threads(set, tile);
+            if (tile == 32 && n >= 10000) add_threads(set, tile);
         }
         Lens uhd;
         uhd.screen = {3840, 2160};

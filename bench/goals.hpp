@@ -76,10 +76,7 @@ inline constexpr Goal goals[] = {
     for_all(of_scale, "field4-4k/256/16px/rectangle/none to flat", 0.6),
     for_all(of_scale, "away/1000000/32px/rectangle/none to reading", 1.5),
     for_all(of_scale, "field4/1000000/32px/rectangle/none to 10,000 lights", 1.5),
-    for_all(of_scale, "field200/10000/32px/rectangle/none/2 threads to one", 1.5, true),
-    // Sharing must never make a build slower; a twentieth is what the clock can tell.
-    for_all(of_scale, "(field20/10000|field4/256)/32px/rectangle/none/2 threads to one from sleep", 0.95,
-            true),
+    for_all(of_scale, "field20/100000/32px/rectangle/none/4 threads to one", 1.5, true),
 
     goal(clusters_to_flat, "slices/field20/256/clusters/(none|box) to flat", 1.4, 2),
     goal(clusters_to_flat, "slices/field20/1000/clusters/(none|box) to flat", 0.8, 1.1),

@@ -175,8 +175,7 @@ private:
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
-        footprints_.project(isa_, view, source, threads, lists_.shared(),
-                            detail::with_boxes<options.depth_test>);
+        footprints_.project(isa_, view, source, threads, detail::with_boxes<options.depth_test>);
         if constexpr (options.coverage) coverage_.template find<kind<LightRange>>(view, footprints_, threads);
         if constexpr (Inputs::reads_slices)
             return ordered_.template order<kind<LightRange>>(isa_, view, footprints_, inputs.slices);

@@ -210,7 +210,8 @@ typedef struct lightbin_allocator {
 /* The library's function that does one of several tasks. The caller's threads call it. */
 typedef void (*lightbin_task)(void* context, size_t index);
 
-/* The caller's threads. lightbin starts none of its own. */
+/* The caller's threads. lightbin starts none of its own. Work is shared however little there is: give threads where
+ * that pays, from about 100,000 lights on (docs/threads.md). */
 typedef struct lightbin_threads {
     uint32_t size;
     /* The number of threads that `run` uses; a wrong number costs speed, never the result */
@@ -219,9 +220,6 @@ typedef struct lightbin_threads {
      * all these calls have returned. */
     void (*run)(void* user, size_t count, lightbin_task task, void* context);
     void* user;
-    /* About how many nanoseconds pass until the threads of `run` have started working. Work that would gain less from
-     * sharing is done by the calling thread alone. 0: 50,000, for sleeping threads. Less than 0: share everything. */
-    double start_ns;
 } lightbin_threads;
 
 /* ---- Matrices and views ---- */

@@ -10,7 +10,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The caller's function for running a loop on several threads, and how many threads it uses. The function is not
-/// copied: it must outlive the call that the Parallel is passed to.
+/// copied: it must outlive the call that the Parallel is passed to. Work is shared however little there is: pass a
+/// Parallel where that pays, from about 100,000 lights on (docs/threads.md).
 class Parallel {
     /// The loop body passed to the caller's function: a type-erased callable of an index.
     struct Body {
@@ -29,16 +30,11 @@ public:
     /// Does all work on the calling thread.
     Parallel() = default;
 
-    /// workers   the number of threads that `run` uses. A wrong number costs speed, but never changes the result.
-    /// run       run(n, body) must call body(i) once for each std::size_t i from 0 to n - 1, in any order and on any
-    ///           threads, and return when all calls have returned: by tbb::parallel_for, a thread pool, OpenMP. body(i)
-    ///           throws if memory runs out or a function of the caller throws. `run` may throw once no body is running.
-    /// start_ns  about how many nanoseconds pass until the threads of `run` have started working; the default is for
-    ///           sleeping threads. Work that would gain less from sharing is done by the calling thread alone, unless
-    ///           it wakes the threads for the work that follows. 0 shares everything that can be shared.
-    template <class Run>
-    Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
-        : workers_(workers > 1 ? workers : 1), start_ns_(start_ns) {
+    /// workers  the number of threads that `run` uses. A wrong number costs speed, but never changes the result.
+    /// run      run(n, body) must call body(i) once for each std::size_t i from 0 to n - 1, in any order and on any
+    ///          threads, and return when all calls have returned: by tbb::parallel_for, a thread pool, OpenMP. body(i)
+    ///          throws if memory runs out or a function of the caller throws. `run` may throw once no body is running.
+    template <class Run> Parallel(std::size_t workers, Run&& run) : workers_(workers > 1 ? workers : 1) {
         using Function = std::decay_t<Run>;  // a function decays to a pointer to it
         if constexpr (std::is_function_v<std::remove_pointer_t<Function>>) {
             run_.function = reinterpret_cast<void (*)()>(Function(run));
@@ -60,12 +56,6 @@ public:
 
     std::size_t workers() const { return workers_; }
 
-    /// Whether sharing work that takes one thread `ns` nanoseconds gains at least twice the time of starting threads.
-    bool pays_off(double ns) const {
-        const double workers = static_cast<double>(workers_);
-        return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
-    }
-
     /// Calls body(i) for each i from 0 to n - 1: by the caller's function, or on the calling thread if there is none.
     template <class Function> void run(std::size_t n, const Function& body) const {
         const auto call = [](const void* context, std::size_t i) {
@@ -79,7 +69,6 @@ public:
 
 private:
     std::size_t workers_ = 1;
-    double start_ns_ = 0;
     CallersRun run_ = {};
     void (*start_)(CallersRun callers, std::size_t n, Body body) = nullptr;
 };

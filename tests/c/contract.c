@@ -368,7 +368,6 @@ static void test_binners(void) {
     threads.run = run_backwards;
     threads.user = &calls;
     threads.workers = 4;
-    threads.start_ns = -1;
     CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_OK);
     CHECK(calls > 0);
     bounds.background_skipped = 1;
@@ -831,7 +830,6 @@ static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* 
             threads.workers = 3;
             threads.run = run_backwards;
             threads.user = &calls;
-            threads.start_ns = -1;
             inputs.threads = &threads;
             if (slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
             if (test != LIGHTBIN_NO_DEPTH_TEST && slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;

@@ -356,7 +356,7 @@ template <Options options> void compare_sides() {
         const ZBounds cpp_bounds = {scene.min, scene.max, scene.gap_min, scene.gap_max,
                                     scene.transparent_max};
         int calls = 0;
-        lightbin_threads threads = {sizeof threads, 3, run_tasks, &calls, -1};
+        lightbin_threads threads = {sizeof threads, 3, run_tasks, &calls};
         auto inputs = sized<lightbin_inputs>();
         if (Read::reads_slices) inputs.slices = slices.get();
         if (Read::reads_bounds) inputs.bounds = &bounds;

@@ -368,7 +368,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     lightbin_grid_union* grid_union = nullptr;
     succeeded(lightbin_budget_create(&allocator, &budget));
     succeeded(lightbin_grid_union_create(&allocator, &grid_union));
-    lightbin_threads threads = {sizeof threads, bytes.byte(), run_tasks, nullptr, bytes.flag() ? -1.0 : 0.0};
+    lightbin_threads threads = {sizeof threads, bytes.byte(), run_tasks, nullptr};
     for (int call = 0; call < 3 && !bytes.empty(); ++call) {
         std::vector<std::unique_ptr<char[]>> memory;
         lightbin_lights lights = {};

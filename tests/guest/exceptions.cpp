@@ -161,7 +161,7 @@ template <Options options> void check_options(const Input& scene, const Input& l
             (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters))
             continue;
         for (const std::size_t workers : {1u, 3u}) {
-            const Survival<options> survival{scene, less, call, Parallel(workers, run, 0)};
+            const Survival<options> survival{scene, less, call, Parallel(workers, run)};
             CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
             if (!all) continue;
             CHECK(survival.template everywhere<Thrown>(events_left, 37) >= 2 * (scene.lights.size() / 37));
@@ -220,7 +220,7 @@ TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bi
     for (std::size_t i = 1; i < scene.lights.size(); ++i)
         if (i % 1000 != 0) scene.lights[i].z = 50;  // behind the eye
     for (const std::size_t workers : {1u, 3u}) {
-        const Survival<Options{}> survival{scene, less, Call::bin, Parallel(workers, run, 0)};
+        const Survival<Options{}> survival{scene, less, Call::bin, Parallel(workers, run)};
         CHECK(survival.everywhere<std::bad_alloc>(allocations_left) > 10);
     }
 }

@@ -44,7 +44,7 @@ TEST_CASE("2^32 - 1 entries, the most that offsets reach, and what kernels write
             body(i);
     };
     for (const std::size_t workers : {1u, 3u}) {
-        const Parallel parallel(workers, run, 0);
+        const Parallel parallel(workers, run);
         check<Options{}>(view, 65537, parallel);
         check<Options{.footprint = Footprint::silhouette}>(view, 65537, parallel);
         check<Options{.depth_test = DepthTest::box}>(view, 65537, parallel);

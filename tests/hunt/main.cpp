@@ -162,7 +162,7 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     Random random(input.seed);
     if (!binner || random.one_in(8)) binner = std::make_unique<lightbin::Binner<options>>();
     const Runner runner = {input.seed};
-    const lightbin::Parallel threads(random.pick<std::size_t>({1, 1, 2, 3, 4, 7, 8, 16, 33, 64}), runner, 0);
+    const lightbin::Parallel threads(random.pick<std::size_t>({1, 1, 2, 3, 4, 7, 8, 16, 33, 64}), runner);
     const auto inputs = lightbin::inputs_for<options>(input.bounds.spans(), input.slices);
     const auto grid =
         with_lights(input.scene, [&](const auto& lights) { return binner->bin(input.view, lights, inputs, threads); });

@@ -25,7 +25,7 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
             while (n > 0)
                 body(--n);
         };
-        const auto parallel = workers > 1 ? lightbin::Parallel(workers, run, 0) : lightbin::Parallel();
+        const auto parallel = workers > 1 ? lightbin::Parallel(workers, run) : lightbin::Parallel();
         if constexpr (options.depth_test == lightbin::DepthTest::none) {
             return binner.bin(view, scene.lights, {}, parallel);
         } else {

@@ -343,7 +343,7 @@ void compare_tier(const char* name, const Scene& scene, std::size_t number, std:
     if (machine_isa(isa) != isa) return;
     static Builder<with(options, isa)> builder;
     for (const std::size_t workers : {std::size_t{1}, 2 + number % 6})
-        if (in_environment([&] { return builder.hash(scene, number, Parallel(workers, backwards, 0)); }) !=
+        if (in_environment([&] { return builder.hash(scene, number, Parallel(workers, backwards)); }) !=
                 expected &&
             failures++ < 10)
             std::printf("%s, scene %zu: %s with %zu workers differs\n", name, number, to_string(isa),

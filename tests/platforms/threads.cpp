@@ -83,8 +83,8 @@ int main() {
         {build<Options{.depth_test = DepthTest::box}>, {}, {}},
         {build<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>, {}, {}},
         {clusters, {}, {}},
-        {clusters, Parallel(3, pool, 0), {}},
-        {build<Options{.footprint = Footprint::silhouette}>, Parallel(2, other_pool, 0), {}}};
+        {clusters, Parallel(3, pool), {}},
+        {build<Options{.footprint = Footprint::silhouette}>, Parallel(2, other_pool), {}}};
     std::vector<std::thread> running;
     for (Job& job : jobs)
         running.emplace_back([&] { job.made = job.build(scene, job.parallel); });

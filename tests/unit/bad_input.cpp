@@ -135,7 +135,7 @@ TEST_CASE("an empty viewport") {
         // Projected in several parts, and binned by the kernel that scatters.
         Binner<Options{.isa = Isa::scalar}> shared;
         const auto none =
-            shared.bin(view, test::random_lights(1000, 43), {}, Parallel(3, test::backwards, 0));
+            shared.bin(view, test::random_lights(1000, 43), {}, Parallel(3, test::backwards));
         REQUIRE(none);
         CHECK(none->ids().empty());
 
@@ -156,7 +156,7 @@ TEST_CASE("any number of workers") {
          {std::size_t{1} << (std::numeric_limits<std::size_t>::digits - 10),
           (std::numeric_limits<std::size_t>::max)() / 4 + 1, (std::numeric_limits<std::size_t>::max)()}) {
         Binner<> binner;
-        CHECK(test::to_lists(*binner.bin(view, lights, {}, Parallel(workers, test::backwards, 0))) ==
+        CHECK(test::to_lists(*binner.bin(view, lights, {}, Parallel(workers, test::backwards))) ==
               test::lists(view, lights));
     }
 }

@@ -33,7 +33,7 @@ template <Options options, class Light> void compare(std::vector<Light> test::Ki
                 // What is there before is no part of it, nor is what lies behind written.
                 std::vector<std::uint32_t> bits(expected.size() + 9, 0xabababab);
                 const auto made =
-                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, test::on_threads, 0));
+                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, test::on_threads));
                 REQUIRE(made);
                 CHECK((std::equal(expected.begin(), expected.end(), bits.begin())));
                 CHECK((std::count(bits.begin() + static_cast<std::ptrdiff_t>(expected.size()), bits.end(),

@@ -30,7 +30,7 @@ TEST_CASE("a Binner that was moved from is as new, and what it had goes on elsew
     const auto lights = test::random_lights(500, 52);
     const auto expected = test::lists(view, lights);
     for (const std::size_t workers : {1u, 3u}) {
-        const Parallel parallel(workers, test::backwards, 0);
+        const Parallel parallel(workers, test::backwards);
         Binner<> from;
         const auto grid = from.bin(view, lights, {}, parallel);
         REQUIRE(grid);
@@ -51,10 +51,10 @@ TEST_CASE("a plain function runs a Parallel's work") {
     const View view = test::view({640, 360}, 16);
     const auto lights = test::random_lights(500, 55);
     const auto expected = test::lists(view, lights);
-    CHECK(test::lists(view, lights, {}, Parallel(3, run_backwards, 0)) == expected);
-    CHECK(test::lists(view, lights, {}, Parallel(3, &run_backwards, 0)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, run_backwards)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, &run_backwards)) == expected);
     const std::function<void(std::size_t, const std::function<void(std::size_t)>&)> function = run_backwards;
-    CHECK(test::lists(view, lights, {}, Parallel(3, function, 0)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, function)) == expected);
 }
 
 TEST_CASE("what is transparent is lit before the sky as well") {

@@ -183,7 +183,7 @@ TEST_CASE("what a light covers depends on no other option, on no tier and on no 
                 CHECK(same(coverage_of(binner), coverage));
                 REQUIRE(binner.bin(view, std::vector<glm::vec4>(), inputs));
                 CHECK(coverage_of(binner).empty());
-                REQUIRE(binner.bin(view, lights, inputs, Parallel(3, test::on_threads, 0)));
+                REQUIRE(binner.bin(view, lights, inputs, Parallel(3, test::on_threads)));
                 CHECK(same(coverage_of(binner), coverage));
             };
             agrees.template operator()<Options{.isa = isa}>();

@@ -9,7 +9,7 @@ using namespace lightbin;
 
 namespace {
 
-const Parallel on_three_threads(3, test::on_threads, 0);
+const Parallel on_three_threads(3, test::on_threads);
 
 template <Options options, class LightRange>
 test::Lists joined_lists(const View& view, const LightRange& all, LightCounts* counts = nullptr) {

@@ -89,7 +89,7 @@ bool right(const Picture& picture, const std::vector<Reach>& lights, const Light
 template <Options options> void check(const Picture& picture, const std::vector<Reach>& lights) {
     static Binner<options> binner;
     for (const std::size_t workers : {1u, 2u, 5u}) {
-        const Parallel parallel(workers, test::backwards, 0);
+        const Parallel parallel(workers, test::backwards);
         const auto grid = binner.bin(picture.view, picture.spheres, inputs_for<options>({}), parallel);
         REQUIRE(grid);
         CHECK(right(picture, lights, *grid, options.footprint == Footprint::rectangle, to_string(options.isa)));

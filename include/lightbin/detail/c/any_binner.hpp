@@ -127,7 +127,7 @@ public:
     ///
     /// shared     whether the lists of the last call were built on several threads
     /// for_boxes  whether the depth test is against boxes
-    virtual std::optional<Error> project(Isa isa, const Call& call, bool shared, bool for_boxes) = 0;
+    virtual std::optional<Error> project(Isa isa, const Call& call, bool for_boxes) = 0;
     virtual void find_coverage(const Call& call, detail::CoverageList& coverage) = 0;
     virtual Projected projected() const = 0;
 
@@ -146,9 +146,8 @@ class ProjectionOf final : public Projection {
 public:
     LIGHTBIN_SMALL void destroy() override { this->~ProjectionOf(); }
 
-    LIGHTBIN_ONCE std::optional<Error> project(Isa isa, const Call& call, bool shared,
-                                               bool for_boxes) override {
-        footprints_.project(isa, call.view, call.lights.all(), call.threads, shared, for_boxes);
+    LIGHTBIN_ONCE std::optional<Error> project(Isa isa, const Call& call, bool for_boxes) override {
+        footprints_.project(isa, call.view, call.lights.all(), call.threads, for_boxes);
         if constexpr (sliced) {
             return with_kind(call.lights.kind(), [&]<detail::LightKind kind>() {
                 return ordered_.template order<kind>(isa, call.view, footprints_, *call.slices);
@@ -376,8 +375,7 @@ private:
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options_.isa);
-        const bool shared = options_.ids == IdWidth::u16 ? narrow_[0].shared() : wide_[0].shared();
-        if (const auto error = projection_->project(isa_, call, shared, how_.with_boxes)) return error;
+        if (const auto error = projection_->project(isa_, call, how_.with_boxes)) return error;
         if (options_.coverage) projection_->find_coverage(call, coverage_);
         return {};
     }

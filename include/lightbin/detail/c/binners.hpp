@@ -126,8 +126,7 @@ lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
     return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, {}}); });
 #else
     const CallersThreads run(threads, binner->memory);
-    const double start_ns = threads.start_ns < 0 ? 0 : threads.start_ns == 0 ? 50000 : threads.start_ns;
-    const Threads parallel = threads.run != nullptr ? Threads(threads.workers, run, start_ns) : Threads();
+    const Threads parallel = threads.run != nullptr ? Threads(threads.workers, run) : Threads();
     return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, parallel}); });
 #endif
 }

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
-// All thresholds and estimates of time for binning. They choose between methods that give the same lists, and were
-// measured with bench/binning on a Zen 4 and a Zen 5.
+// All thresholds of binning. They choose between methods that give the same lists, and were measured with bench/binning
+// on a Zen 4 and a Zen 5.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/isa.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
-
-/// Estimates how many ns one thread of a fast processor takes to project lights that are all in view.
-inline double project_ns(Isa isa, double lights) {
-    return lights * (isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7);
-}
 
 /// Returns into how many parts the chunks of lights are divided for a number of threads: four parts a thread, so that
 /// little time is lost where one thread starts late. One part if there is one thread, as each part takes memory.
@@ -25,29 +20,6 @@ inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) {
     if (isa == Isa::scalar) return true;
     return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
-}
-
-/// Estimates how many ns of binning by scattering ids to tiles' lists (scatter.hpp) can be divided among threads. Each
-/// thread repeats the rest: it visits all lights, and mispredicts branches on which lights are in its share.
-inline double scatter_ns(double lights, double entries) {
-    return max_of(0.6 * entries - 8 * lights, 0.0);
-}
-
-/// Estimates how many ns one thread of a fast processor takes to bin by blocks: to list the lights of each block of 8x8
-/// tiles, and from these write the tiles' lists.
-///
-/// tested           whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed
-/// lights, entries  the number of lights in view, and of tiles in all their rectangles
-inline double block_ns(Isa isa, bool tested, double lights, double entries) {
-    const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
-    return slower * (tested ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
-}
-
-/// Estimates how many ns one thread takes to bin lights with the faster method: scattering, or by blocks of 8x8 tiles.
-inline double bin_ns(bool tested, Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
-    const double count = static_cast<double>(lights), entries = static_cast<double>(area);
-    return !tested && scatter_is_faster(isa, tiles, area) ? scatter_ns(count, entries)
-                                                                  : block_ns(isa, tested, count, entries);
 }
 
 /// Returns the time to write a row of `tiles` empty tiles, in units of the time to write one entry of the index list.

@@ -47,15 +47,13 @@ public:
                                              const ChooseKernel& choose_kernel,
                                              [[maybe_unused]] const CountEntries& count_entries) {
         tile_count_ = entries_ = 0;  // until there is a grid
-        shared_ = false;
         Job common = {};
         if (const auto error = prepare(view, bounds, how, common)) return error;
         const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(footprints.slices());
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
-        std::uint64_t lights = 0, area = 0;
+        std::uint64_t area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
             const FootprintSlice part = footprints.slice(slice);
-            lights += part.visible;
             area += part.area;
             if (const auto error = check_list_size(view, part)) return error;
         }
@@ -85,9 +83,7 @@ public:
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t steps = how.sliced ? slices : rows,
                               count = min_of<std::size_t>(parallel.workers(), steps);
-            shared_ = count > 1 && area <= max_entries &&
-                      parallel.pays_off(bin_ns(how.tested, isa, tile_count_, lights, area));
-            if (shared_) {
+            if (count > 1 && area <= max_entries) {
                 scratch.reserve(count, count);
                 const Items<Share> shares = {shares_.reserve(count), count};
                 if constexpr (How::may_slice)
@@ -103,19 +99,12 @@ public:
                     }
                 const Job job = job_of(common, footprints, 0);
                 const auto kernel = choose_kernel(isa, view, job);
-                share_rows(job, parallel, row_sums_, shares, kernel == scatter_lights<Id> ? 0 : BinShare<Id>::slack);
-                if constexpr (How::may_test)
-                    if (how.tested) {
-                        entries_ = static_cast<std::size_t>(build_shares(
-                            parallel, shares, common.tiles, tiles / rows, share_lists_, list,
-                            [&](const Share& share, std::size_t i, Id* out) {
-                                return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
-                            }));
-                        return {};
-                    }
-                entries_ = static_cast<std::size_t>(build_rectangles(
-                    parallel, Items<const Share>{shares.first, count}, share_lists_, list,
-                    [&](std::size_t i, const BinShare<Id>& part) { kernel(job, scratch.data()[i], part); }));
+                share_rows(job, parallel, row_sums_, shares);
+                entries_ = static_cast<std::size_t>(
+                    build_shares(parallel, shares, common.tiles, tiles / rows, share_lists_, list,
+                                 [&](const Share& share, std::size_t i, Id* out) {
+                                     return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
+                                 }));
                 return {};
             }
         }
@@ -126,7 +115,7 @@ public:
     /// Writes for each tile a bitmask of `stride` words: bit b of word w stands for the light with the id 32 w + b.
     /// Drops the last built grid: tiles() is empty. Returns build()'s errors but too many entries, as none are counted.
     template <class AnyFootprints>
-    LIGHTBIN_ONCE std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints,
+    LIGHTBIN_ONCE std::optional<Error> write_bits(Isa, const View& view, const AnyFootprints& footprints,
                                                   const ZBounds& bounds, Buffer<Scratch>& scratch,
                                                   const Parallel& parallel, const How& how, BitsKernel kernel,
                                                   std::uint32_t* bits, std::size_t stride) {
@@ -136,8 +125,7 @@ public:
         const Job job = job_of(common, footprints, 0);
         if (const auto error = check_list_size(view, job)) return error;
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
-        const bool share = parallel.pays_off(block_ns(isa, true, job.visible, static_cast<double>(job.area)));
-        const std::size_t count = share ? max_of<std::size_t>(min_of(parallel.workers(), bands), 1) : 1;
+        const std::size_t count = max_of<std::size_t>(min_of(parallel.workers(), bands), 1);
         scratch.reserve(count, count);
         parallel.run(count, [&](std::size_t i) {
             const auto row = [&](std::size_t part) {
@@ -150,9 +138,6 @@ public:
 
     template <class Range = ListRange> std::span<const Range> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
-
-    /// Whether the last grid was built on several threads, each of which built a share of it.
-    bool shared() const { return shared_; }
 
 private:
     static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
@@ -210,7 +195,6 @@ private:
     Buffer<Buffer<Id>> share_lists_;
     Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
-    bool shared_ = false;
 };
 
 /// The TileLists for a footprint and a depth test that are known when it is compiled, with their kernels.
@@ -244,7 +228,6 @@ public:
 
     template <class Range = ListRange> std::span<const Range> tiles() const { return lists_.tiles(); }
     std::span<const Id> indices() const { return lists_.indices(); }
-    bool shared() const { return lists_.shared(); }
 
 private:
     TileLists<Id, How> lists_;

@@ -14,12 +14,6 @@ struct Share {
     unsigned begin, end;
     /// How many list entries the thread writes; until it has, an upper bound: the tiles of all rectangles in its share.
     std::uint64_t entries;
-    // Only for build_rectangles(), where threads write neighbouring parts of one index list.
-    std::uint64_t before = 0;  ///< the number of list entries, pairs of a light and a tile, in all earlier shares
-    /// Kernels write past their list's end, where the next share's entries are. So a tail of tile rows, tail_begin to
-    /// end - 1, with at least as many entries as a kernel may write there, is built in separate memory and copied.
-    unsigned tail_begin = 0;
-    std::uint64_t tail_entries = 0;  ///< the number of entries of the tile rows tail_begin..end-1
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The
@@ -48,11 +42,9 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
 /// rectangles cover in it, each counted for each light: the prefix sums of difference arrays over the rows. Each run of
 /// footprints has a difference array of its own, so that threads can fill them in parallel.
 ///
-/// sums   memory for the difference arrays
-/// slack  how many elements a kernel may write past its list's end: each share but the last gets a tail of as many
+/// sums  memory for the difference arrays
 template <class Id>
-void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares,
-                std::size_t slack) {
+void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares) {
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* const row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
@@ -72,38 +64,6 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     }
     share_steps(shares, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
                 [&](std::size_t row) { return row_area[row]; });
-    std::uint64_t before = 0;
-    for (Share& share : shares) {
-        share.before = before;
-        before += share.entries;
-        share.tail_begin = share.end;
-        if (&share == shares.end() - 1) break;
-        while (share.tail_begin > share.begin && share.tail_entries < slack)
-            share.tail_entries += row_area[--share.tail_begin];
-    }
-}
-
-/// Builds all shares in parallel, each share's list at its final place in `list`. Lights are listed in every tile of
-/// their rectangles, so each share's number of entries is known beforehand, and only its tail (see Share::tail_begin)
-/// is copied. build_shares() copies whole lists, which takes as long as the kernels if lists are long. Returns the
-/// number of entries.
-///
-/// memory  the memory of the tails, kept from call to call
-/// build   build(i, rows) builds some rows of share i, a BinShare
-template <class Id, class Build>
-std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shares, Buffer<Buffer<Id>>& memory,
-                               Id* list, Build build) {
-    memory.reserve(shares.size(), shares.size());
-    parallel.run(shares.size(), [&](std::size_t i) {
-        const Share& share = shares[i];
-        const std::uint64_t tail = share.before + share.entries - share.tail_entries;  // where the tail's entries begin
-        build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
-        Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);
-        build(i, {share.tail_begin, share.end, copied, static_cast<std::uint32_t>(tail)});
-        copy_items(copied, share.tail_entries, list + tail);
-    });
-    const Share& last = shares[shares.size() - 1];
-    return last.before + last.entries;
 }
 
 /// Builds all shares in parallel, and joins their index lists. The first is built in `list`, each further one in memory

@@ -25,8 +25,7 @@ template <class Source> std::optional<Error> refuse(const Source& source, std::u
     return error;
 }
 
-/// Returns into how many parts an array of lights is divided to be projected. It does not depend on whether threads share
-/// the parts. It is 1 where the padding behind each part's run of footprints could push indices beyond 32 bits.
+/// Returns into how many parts an array of lights is divided to be projected. It is 1 where the padding behind each part's run of footprints could push indices beyond 32 bits.
 inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
     return lights >> 31 == 0 ? project_parts(lights / ChunkRects::size + 1, parallel.workers()) : 1;
 }
@@ -52,15 +51,11 @@ public:
     /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
     /// of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     ///
-    /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a
-    ///                 stage that follows has enough
-    /// for_boxes       store with each spot or Box what depth tests against boxes need; only if with_spheres
+    /// for_boxes  store with each spot or Box what depth tests against boxes need; only if with_spheres
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
-                               bool force_parallel = false, bool for_boxes = false) {
+                               bool for_boxes = false) {
         lights_ = detail::light_count(source);
-        const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
-        const Parallel threads = share ? parallel : Parallel();
         const auto parts_of = [&](const auto& lights) { return detail::parts_of(lights.array.size(), parallel); };
         run_count_ = 0;
         detail::for_each_array(source, [&](const auto& lights) { run_count_ += parts_of(lights); });
@@ -69,7 +64,7 @@ public:
         arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding, with_spans);
         std::size_t first_id = 0, first_part = 0;
         detail::for_each_array(source, [&](const auto& lights) {
-            project_array(isa, view, lights, threads, for_boxes, first_id, first_part, parts_of(lights));
+            project_array(isa, view, lights, parallel, for_boxes, first_id, first_part, parts_of(lights));
             first_id += lights.array.size();
             first_part += parts_of(lights);
         });
@@ -86,7 +81,7 @@ public:
             first_part = 0;
             detail::for_each_array(source, [&]<class Array>(const Array& lights) {
                 const auto kernel = detail::row_span_kernel<Array::kind>(isa);
-                threads.run(parts_of(lights), [&](std::size_t i) {
+                parallel.run(parts_of(lights), [&](std::size_t i) {
                     const std::size_t part = first_part + i;
                     kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans_.data(),
                            part_counts_.data()[part].rows);

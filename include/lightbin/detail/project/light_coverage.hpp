@@ -86,8 +86,7 @@ public:
     void find(const View& view, const AnyFootprints& footprints, const Parallel& parallel) {
         const Items<const FootprintRun> runs = footprints.runs();
         LightCoverage* const lights = lights_.reserve(footprints.visible());
-        const bool share = parallel.pays_off(40.0 * footprints.visible());  // about 40 ns a light
-        (share ? parallel : Parallel()).run(runs.size(), [&](std::size_t i) {
+        parallel.run(runs.size(), [&](std::size_t i) {
             LightCoverage* to = lights;
             for (const FootprintRun* run = runs.begin(); run != &runs[i]; ++run)
                 to += run->end - run->begin;
