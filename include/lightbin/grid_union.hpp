@@ -45,14 +45,14 @@ public:
     }
 
 private:
-    static detail::Items<const Id> list_of(const LightGrid<Id>& grid, std::size_t cell) {
+    static std::span<const Id> list_of(const LightGrid<Id>& grid, std::size_t cell) {
         const ListRange range = grid.ranges()[cell];
-        return {grid.ids().data() + range.offset, range.count};
+        return grid.ids().subspan(range.offset, range.count);
     }
 
     /// Writes the union of two ascending lists to `out`, which has room for the ids of both, and returns its length.
-    static std::uint32_t merge(detail::Items<const Id> a, detail::Items<const Id> b, Id* out) {
-        const Id *from_a = a.begin(), *from_b = b.begin();
+    static std::uint32_t merge(std::span<const Id> a, std::span<const Id> b, Id* out) {
+        auto from_a = a.begin(), from_b = b.begin();
         Id* to = out;
         while (from_a != a.end() && from_b != b.end()) {
             // The lesser id is taken from each list that goes on with it, so from both lists where both do.

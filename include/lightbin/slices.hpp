@@ -72,24 +72,20 @@ public:
     int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
     /// Returns the count() - 1 boundaries in ascending order, valid as long as the Slices. Slice i ends at boundary i.
-    std::span<const float> boundaries() const& {
-        return {table_.boundaries().first, table_.boundaries().count};
-    }
+    std::span<const float> boundaries() const& { return table_.boundaries(); }
     void boundaries() && = delete;  // the span would dangle
 
     /// Returns the index of the slice that contains a depth, not NaN. A boundary itself belongs to the slice behind it.
     int slice_at(float depth) const {
-        const detail::Items<const float> all = table_.boundaries();
-        return static_cast<int>(
-            detail::first_not(all.begin(), all.end(), [=](float boundary) { return boundary <= depth; }) -
-            all.begin());
+        const float *const begin = table_.boundaries().data(), *const end = begin + table_.boundaries().size();
+        return static_cast<int>(detail::first_not(begin, end, [=](float boundary) { return boundary <= depth; }) - begin);
     }
 
 private:
     /// Returns the lookup table from depths to slices. It is not public: the library's own binning stages read it.
     friend const detail::SliceTable& table_of(const Slices& slices) { return slices.table_; }
 
-    explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}
+    explicit Slices(std::span<const float> boundaries) : table_(boundaries) {}
 
     /// Returns `count` slices whose boundary i is at the depth boundary(i).
     template <class Law> static Result<Slices> from_law(std::int64_t count, Law boundary) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stand-ins for parts of <algorithm> and <span>, which take 50 and 30 ms to compile; Items stands in for std::span.
+// Stand-ins for parts of <algorithm>, which takes 50 ms to compile.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -12,17 +12,6 @@
 #include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
-
-/// A contiguous array of items that someone else owns: std::span for internal use, as that header compiles slowly.
-template <class T> struct Items {
-    T* first;
-    std::size_t count;
-
-    T* begin() const { return first; }
-    T* end() const { return first + count; }
-    std::size_t size() const { return count; }
-    T& operator[](std::size_t i) const { return first[i]; }
-};
 
 /// Returns the lesser of two values; `a` if they are equal or if either is NaN.
 template <class T> constexpr T min_of(T a, T b) {

@@ -24,7 +24,7 @@ public:
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
-        const std::uint32_t size = footprints.runs().end()[-1].end;
+        const std::uint32_t size = footprints.runs().back().end;
         std::uint32_t *const ends = ends_.reserve(bin_count_), *const sources = sources_.reserve(run_.end);
         std::uint32_t *const first_bins = first_bins_.reserve(size), *const last_bins = last_bins_.reserve(size);
         detail::fill_items(ends, bin_count_, 0);

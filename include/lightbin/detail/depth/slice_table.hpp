@@ -11,6 +11,7 @@
 #include <lightbin/detail/base/rounding.hpp>
 
 #include <bit>
+#include <span>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
@@ -45,10 +46,10 @@ struct LightDepths {
 /// A lookup table of the depth slices between boundaries, which ascend and are finite.
 class SliceTable {
 public:
-    explicit SliceTable(Items<const float> boundaries) : count_(boundaries.size()) {
+    explicit SliceTable(std::span<const float> boundaries) : count_(boundaries.size()) {
         const DefaultFloatEnvironment environment;
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
-        copy_items(boundaries.first, count_, to);
+        copy_items(boundaries.data(), count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
         // Buckets of equal length in depth or, if fewer boundaries share a bucket then, in the depths' bit patterns.
         fill_buckets(false);
@@ -57,7 +58,7 @@ public:
         if (shared_ > shared_by_depth) fill_buckets(false);
     }
 
-    Items<const float> boundaries() const { return {boundaries_.data(), count_}; }
+    std::span<const float> boundaries() const { return {boundaries_.data(), count_}; }
 
     /// How far the depths of lights and slices are widened, as a fraction of themselves: see Slices::with_margin().
     float margin = 0;
@@ -123,7 +124,7 @@ private:
 
     /// Divides the depths into buckets, and counts the slice boundaries before each: a histogram's prefix sum.
     void fill_buckets(bool by_bits) {
-        const Items<const float> all = boundaries();
+        const std::span<const float> all = boundaries();
         buckets_.by_bits = by_bits;
         // Four times as many buckets as boundaries, so that few boundaries share one; but at least 512, whose table
         // stays in the cache anyway.

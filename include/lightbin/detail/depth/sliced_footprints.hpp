@@ -48,7 +48,7 @@ public:
     detail::FootprintSlice slice(std::size_t i) const {
         const SliceRun& run = runs_.data()[i];
         return {arrays_,
-                {&run, 1},
+                {static_cast<const detail::FootprintRun*>(&run), 1},
                 run.end - run.begin,
                 run.area,
                 {i == 0 ? -detail::infinity : table_->nearer(table_->boundaries()[i - 1]),

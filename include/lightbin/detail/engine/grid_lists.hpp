@@ -85,7 +85,7 @@ public:
                               count = min_of<std::size_t>(parallel.workers(), steps);
             if (count > 1 && area <= max_entries) {
                 scratch.reserve(count, count);
-                const Items<Share> shares = {shares_.reserve(count), count};
+                const std::span<Share> shares(shares_.reserve(count), count);
                 if constexpr (How::may_slice)
                     if (how.sliced) {
                         share_steps(shares, slices, empty_row_cost(tiles),

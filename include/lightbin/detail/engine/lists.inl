@@ -95,7 +95,7 @@ void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
     fill_items(to.sizes, to.count, 0);
     const std::uint32_t* ids = job.lights.ids;
     if constexpr (tested) {
-        const std::uint32_t last = job.runs.count == 0 ? 0 : job.runs[job.runs.count - 1].end;
+        const std::uint32_t last = job.runs.empty() ? 0 : job.runs.back().end;
         std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{64});
         for (const FootprintRun& run : job.runs)
             for (std::uint32_t i = run.begin; i < run.end; ++i)

@@ -18,7 +18,7 @@ struct Share {
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The
 /// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`.
-template <class Area> void share_steps(Items<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
+template <class Area> void share_steps(std::span<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
     for (std::size_t step = 0; step < steps; ++step)
@@ -44,7 +44,7 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
 ///
 /// sums  memory for the difference arrays
 template <class Id>
-void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares) {
+void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, std::span<Share> shares) {
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* const row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
@@ -73,7 +73,7 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// memory  the memory of all shares' lists but the first, kept from call to call
 /// build   build(share, i, out) builds share i, its list at `out` with offsets from 0 on; returns its number of entries
 template <class Id, class Build>
-std::uint64_t build_shares(const Parallel& parallel, Items<Share> shares, ListRange* ranges, std::size_t width,
+std::uint64_t build_shares(const Parallel& parallel, std::span<Share> shares, ListRange* ranges, std::size_t width,
                            Buffer<Buffer<Id>>& memory, Id* list, Build build) {
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {

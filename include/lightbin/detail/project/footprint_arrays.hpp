@@ -6,6 +6,8 @@
 #include <lightbin/detail/project/view_box.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
 
+#include <span>
+
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Where a projection kernel reads lights from, and where it writes what later stages need of them in view space.
@@ -140,7 +142,7 @@ struct ProjectedChunk {
 /// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;
-    Items<const FootprintRun> runs;
+    std::span<const FootprintRun> runs;
     std::uint32_t visible;                  ///< the number of footprints in all FootprintRuns of `runs` together
     std::uint64_t area;                     ///< the number of tiles in the rectangles of all footprints of `runs`
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds

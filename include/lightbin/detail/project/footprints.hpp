@@ -96,7 +96,7 @@ public:
     std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, as Sphere defines it
     std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
-    detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
+    std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
     /// How many lights were given and left out, and the ids at which kinds begin.
     LightCounts counts() const {

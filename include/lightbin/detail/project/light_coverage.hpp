@@ -84,12 +84,12 @@ public:
     /// footprints  the footprints of the lights, which are of the LightKind `kind`, with the lights in view space
     template <LightKind kind, class AnyFootprints>
     void find(const View& view, const AnyFootprints& footprints, const Parallel& parallel) {
-        const Items<const FootprintRun> runs = footprints.runs();
+        const std::span<const FootprintRun> runs = footprints.runs();
         LightCoverage* const lights = lights_.reserve(footprints.visible());
         parallel.run(runs.size(), [&](std::size_t i) {
             LightCoverage* to = lights;
-            for (const FootprintRun* run = runs.begin(); run != &runs[i]; ++run)
-                to += run->end - run->begin;
+            for (const FootprintRun& run : runs.first(i))
+                to += run.end - run.begin;
             for (std::uint32_t light = runs[i].begin; light < runs[i].end; ++light)
                 *to++ = coverage_of<kind>(view, footprints.arrays(), light);
         });
