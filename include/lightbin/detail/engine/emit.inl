@@ -82,9 +82,6 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
 }
 
 #if !defined(LIGHTBIN_TIER_EMITS_SHORT)
-/// The length of the longest lists for which emit_short() is called.
-inline constexpr std::uint32_t longest_short = 16;
-
 /// Writes the light lists of one row of up to 8 tiles of a block, and their ranges in the index list. The block's list
 /// has up to `at_most` lights, 8 or 16; emit_tiles() serves longer ones. Returns the end of the index list.
 ///
@@ -130,8 +127,10 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
             end = emit_short<8>(out, tiles + x, columns, offset, lights.ids, lights.columns);
         } else if (lights.count <= 16) {
             end = emit_short<16>(out, tiles + x, columns, offset, lights.ids, lights.columns);
-        } else if (lights.count <= longest_short) {
-            end = emit_short<longest_short>(out, tiles + x, columns, offset, lights.ids, lights.columns);
+#if defined(LIGHTBIN_TIER_EMITS_SHORT)
+        } else if (lights.count <= 32) {
+            end = emit_short<32>(out, tiles + x, columns, offset, lights.ids, lights.columns);
+#endif
         } else {
             std::uint64_t few[8], *words = few;
             if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});

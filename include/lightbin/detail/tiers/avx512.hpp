@@ -214,7 +214,6 @@ LIGHTBIN_INLINE Id* append_several(Id* out, const std::uint32_t* ids, std::uint6
 }
 
 #define LIGHTBIN_TIER_EMITS_SHORT
-inline constexpr std::uint32_t longest_short = 32;
 /// Writes the light ids and the ranges of up to 8 tiles, in place of emit_short() in emit.inl, from a list of up to 8,
 /// 16 or 32 lights. A compress instruction finds the lights of 8, 4 or 2 tiles at once: builds of few or small lights
 /// take 1.2 to 1.7 times as long without it.
