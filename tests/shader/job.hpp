@@ -52,8 +52,8 @@ struct Job {
 
 /// What comes before a text.
 inline std::string version_line(lightbin::ShaderLanguage language) {
-    constexpr const char* lines[] = {"#version 330 core\n",
-                                     "#version 430 core\n",
+    constexpr const char* lines[] = {"#version 430 core\n",
+                                     "#version 330 core\n",
                                      "#version 450\n",
                                      "#version 300 es\n",
                                      "#version 310 es\n",
