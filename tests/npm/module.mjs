@@ -370,14 +370,14 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
         assert.throws(() => binner.bin(view, lights), {code: 'null-argument', message: /^binner: /});
         assert.throws(() => view.shaderGrid(), {code: 'null-argument'});
         await assert.rejects(lightbin.shader({language: 'basic'}), {code: 'not-a-value',
-            message: /'basic' is none of glsl-330/});
+            message: /'basic' is none of glsl-430/});
         await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
         for (const prefix of ['1x', null, 'a\0b', 'a'.repeat(130000)])
             await assert.rejects(lightbin.shader({language: 'wgsl', prefix}), {code: 'not-a-prefix'});
         assert.throws(() => { foreign.length = 100; }, TypeError);
         for (const [options, message] of [
             [undefined, /^options must be an object of language/],
-            [{}, /^options.language: 'null' is none of glsl-330/],
+            [{}, /^options.language: 'null' is none of glsl-430/],
             [{tilesize: 8}, /there is no 'tilesize'/], [{tiles: {binding: 1}}, /there is no 'tiles'/],
             [{slots: {tile: {}}}, /^options.slots: there is no 'tile', but tiles, lists/],
             [{slots: {tiles: 3}}, /^options.tiles must be an object of binding, set/],
