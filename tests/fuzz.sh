@@ -20,7 +20,7 @@ compile() {
 for source in oracle/judge oracle/engine fuzz/binning fuzz/shader; do
     compile tests/$source.cpp
 done
-compile tests/fuzz/c.cpp -DLIGHTBIN_NO_SIMD -DLIGHTBIN_NO_ADVICE
+compile tests/fuzz/c.cpp -DLIGHTBIN_NO_SIMD
 clang++-14 -fsanitize=fuzzer,address,undefined $work/binning.o $work/judge.o $work/engine.o -lgmp -o $work/fuzz_binning
 clang++-14 -fsanitize=fuzzer,address,undefined $work/shader.o -o $work/fuzz_shader
 clang++-14 -fsanitize=fuzzer,address,undefined $work/c.o -o $work/fuzz_c

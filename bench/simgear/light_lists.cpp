@@ -11,6 +11,5 @@
 #define LIGHTBIN_NO_COVERAGE
 #define LIGHTBIN_NO_BUDGETS
 #define LIGHTBIN_NO_SHADERS
-#define LIGHTBIN_NO_ADVICE
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>

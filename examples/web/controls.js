@@ -13,7 +13,7 @@ export class Controls {
     #settings;
     #change;
 
-    // change(names): called after settings of these names have changed. act: functions, open, compare, advise, camera.
+    // change(names): called after settings of these names have changed. act: functions, open, compare, camera.
     constructor(settings, change, act) {
         this.#settings = settings;
         this.#change = change;
@@ -30,7 +30,6 @@ export class Controls {
             by_id('file').value = '';  // so that the same one can be chosen again
         });
         by_id('compare').addEventListener('click', act.compare);
-        by_id('advise').addEventListener('click', act.advise);
         by_id('help').addEventListener('click', () => by_id('keys').showModal());
         by_id('fold').addEventListener('click', () => this.#fold());
         if (matchMedia('(max-width: 640px), (max-height: 480px) and (pointer: coarse)').matches) this.#fold();
@@ -144,55 +143,4 @@ export class Controls {
             if (file) act.open(file);
         });
     }
-}
-
-// advise()'s plans as a table; `take` gets the one whose button is pressed.
-export function show_advice(plans, pixels, take) {
-    const cell = (kind, text) => Object.assign(document.createElement(kind), {textContent: text});
-    const table = document.createElement('table'), head = table.createTHead().insertRow(), body = table.createTBody();
-    for (const title of ['Plan', 'Build', 'Entries', 'A pixel', 'Total']) head.append(cell('th', title));
-    for (const plan of cheapest_of_each(plans)) {
-        const {tileSize: tile, totalNs, buildNs, entries, evaluations} = plan;
-        const row = body.insertRow(), method = method_of(plan);
-        row.classList.toggle('best', plan === plans[0]);
-        const button = cell('button', plan.tiled ? `${tile} px, ${words_of(plan)}` : 'every light');
-        button.type = 'button';
-        button.disabled = by_id('method').querySelector(`[value=${method}]`)?.disabled ?? true;
-        button.addEventListener('click', () => take({method, tile}));
-        row.insertCell().append(button);
-        row.append(...[(buildNs / 1e6).toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
-            (totalNs / 1e6).toFixed(1)].map(text => cell('td', text)));
-    }
-    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile '
-        + 'sizes, of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, '
-        + 'lights that a pixel goes through, and milliseconds with a guess of the shading. Press one to take it; those '
-        + 'in grey are not drawn here.'));
-    by_id('advice').hidden = false;
-    by_id('advice').focus();
-}
-
-// In words, what a plan's lists are of.
-function words_of({footprint, depthTest, slicing}) {
-    const words = {'no-slicing': [], 'z-bins': ['z-bins'], clusters: ['clusters']}[slicing];
-    if (footprint === 'silhouette') words.push('silhouettes');
-    if (depthTest !== 'no-depth-test') words.push(slicing === 'no-slicing' ? `Z bounds, ${depthTest}` : 'boxes');
-    return words.join(', ') || 'tiles';
-}
-
-// The plans are the cheapest first.
-function cheapest_of_each(plans) {
-    const first = new Map();
-    for (const plan of plans) {
-        const words = plan.tiled ? words_of(plan) : '';
-        if (!first.has(words)) first.set(words, plan);
-    }
-    return first.values();
-}
-
-// The depth method of a plan, or none where this page does not draw it.
-function method_of({tiled, footprint, depthTest, slicing}) {
-    if (!tiled || footprint !== 'rectangle') return undefined;
-    if (slicing === 'clusters') return depthTest === 'box' ? 'clusters' : undefined;
-    if (slicing === 'z-bins') return 'z_bins';
-    return depthTest === 'no-depth-test' ? 'none' : depthTest;
 }

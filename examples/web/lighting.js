@@ -104,24 +104,6 @@ export class Lighting {
         }
     }
 
-    // What the ways to light this view cost here, the cheapest first; with z_bounds those with depth, too, and
-    // z_bounds_milliseconds is what they took. Takes some hundreds of frames.
-    async advise(settings, z_bounds = null, z_bounds_milliseconds = 0) {
-        const {tiles_x: columns, tiles_y: rows} = this.view(settings), {shapes, reach} = this.#place(settings);
-        if (!z_bounds) return this.lightbin.advise(this.#view, shapes);
-        const {min, max} = z_bounds, bounds = {min, max, backgroundSkipped: true};
-        const plans = await this.lightbin.advise(this.#view, shapes, {bounds, zBoundsNs: 1e6 * z_bounds_milliseconds});
-
-        // The same in slices. What is farthest in each tile tells at which depths there is something to light.
-        const [clusters, zBins] = ['clusters', 'z_bins'].map(method => this.#slices(method, settings, reach));
-        const sliced = await this.lightbin.adviseSlices(this.#view, shapes,
-            {clusters, zBins, depths: max, columns, rows});
-        clusters.dispose();
-        zBins.dispose();
-        plans.push(...sliced.filter(plan => plan.slicing !== 'no-slicing'));
-        return plans.sort((a, b) => a.totalNs - b.totalNs);
-    }
-
     // The lights of scenes.lights(), their number, and their shapes as lightbin takes them: as spots where any is one, and
     // by their spheres alone where none is, which takes less time.
     #place({camera, seconds = 0, drop = -1}) {

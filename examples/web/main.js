@@ -2,7 +2,7 @@
 // The page: start() has how it begins, and run() a frame from top to bottom.
 import {FlyingKeys, FreeCamera, listen_to_pointers} from './camera.js';
 import {compare, meter} from './checks.js';
-import {by_id, Controls, counted, sentence, show_advice} from './controls.js';
+import {by_id, Controls, counted, sentence} from './controls.js';
 import {load_lighting} from './lighting.js';
 import {PictureSize} from './picture_size.js';
 import {Plot} from './plot.js';
@@ -164,14 +164,6 @@ async function check() {
     }
 }
 
-async function advise() {
-    const frame = {...frame_settings(1), tile_size: 16, clip: renderer.rows_from_below ? 'webgl' : 'webgpu'};
-    const bounds = 'box' in renderer.refused ? null : await renderer.bounds(lighting, frame);
-    const plans = await lighting.advise(frame, bounds, bounds?.milliseconds);
-    show_advice(plans, frame.width * frame.height, settings => controls.set(settings));
-    renew();  // the pre-pass was drawn over the picture's depth
-}
-
 const actions = {
     open: file => {
         complain();
@@ -184,7 +176,6 @@ const actions = {
         tell('Drawing with every light');
         jobs.add(check);
     },
-    advise: () => jobs.add(advise),
     camera: view => {
         if (view >= scene.cameras.length) return;
         settings.at = '';

@@ -113,14 +113,6 @@ export class WebGl {
         return {ms, in_view, rejected, entries, longest, tiles_x, tiles_y, timed: this.#timer.kind};
     }
 
-    // The Z bounds of a view's tiles, and what they took.
-    async bounds(lighting, settings) {
-        this.#frame_buffer.resize(settings.width, settings.height);
-        await until_done(this.#gl);
-        const start = performance.now(), bounds = await this.#find_bounds(lighting, settings);
-        return {...bounds, milliseconds: performance.now() - start};
-    }
-
     async read() {
         const picture = this.#frame_buffer.read(), error = this.#gl.getError();
         if (error !== this.#gl.NO_ERROR) throw new Error(`WebGL reports error ${error}.`);

@@ -122,26 +122,6 @@ export class WebGpu {
         }
     }
 
-    // The Z bounds of a view's tiles, and what they took.
-    async bounds(lighting, settings) {
-        const view = lighting.view({...settings, clip: 'webgpu'}), {tiles_x, tiles_y} = view;
-        const programs = await this.#programs.that_bound(lighting, settings);
-        const bytes = 8 * tiles_x * tiles_y, pairs = this.#store('bounds', usages.results);
-        const {z_bounds} = this.#lists;
-        this.#resize(settings.width, settings.height);
-        this.#upload({...view, light_count: 0, sun_count: 0}, settings);
-        z_bounds.reserve(bytes);
-        pairs.reserve(bytes);
-
-        const encoder = this.#device.createCommandEncoder(), start = performance.now();
-        this.#find_bounds(encoder, programs, view);
-        encoder.copyBufferToBuffer(z_bounds.buffer, 0, pairs.buffer, 0, bytes);
-        this.#device.queue.submit([encoder.finish()]);
-        const words = new Float32Array(await pairs.read(bytes));
-        const side = first => words.filter((_, i) => i % 2 === first);
-        return {min: side(0), max: side(1), milliseconds: performance.now() - start};
-    }
-
     #resize(width, height) {
         if (this.#picture?.width === width && this.#picture.height === height) return;
         this.#picture?.destroy();

@@ -37,11 +37,6 @@ export class Programs {
         });
     }
 
-    // Returns depth and reduce, which find Z bounds.
-    that_bound(lighting, {camera: {orthographic}}) {
-        return all({depth: this.#depth(), reduce: this.#reduce(lighting, orthographic, false)});
-    }
-
     #lists(lighting, options) {
         return this.#once(JSON.stringify(options), () => CulledLists.kernels(this.#device, lighting, options));
     }

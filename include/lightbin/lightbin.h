@@ -198,8 +198,8 @@ LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
  * and one that is null beside one that is not is refused. The functions may be called on any thread that runs tasks of
  * lightbin_threads, several at a time.
  *
- * While a shader text, the content of a shader's buffers or advice is made, parts of it are in memory of the C++
- * library's operator new. All of that memory is freed before the call returns. */
+ * While a shader text or the content of a shader's buffers is made, parts of it are in memory of the C++ library's
+ * operator new. All of that memory is freed before the call returns. */
 typedef struct lightbin_allocator {
     void* (*allocate)(void* user,
                       size_t bytes); /* memory aligned as that of malloc(), or null if there is none */
@@ -1084,71 +1084,6 @@ LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, li
                                                    size_t capacity, size_t* count);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity, size_t* count);
-
-/* ---- Advice ---- */
-
-/* Costs that depend on the renderer and the GPU and so can't be measured here, in nanoseconds. */
-typedef struct lightbin_costs {
-    uint32_t size;
-    uint32_t unused;
-    double evaluation_ns; /* of one light at one pixel, 0.005 to 0.05 on a whole GPU; 0: 0.02 */
-    /* Of the depth pre-pass and its reduction to Z bounds; 0 if the renderer does both anyway */
-    double z_bounds_ns;
-    double upload_byte_ns; /* of moving one byte of the lists to the GPU: 0.1 at 10 GB/s */
-    double overdraw;       /* fragments shaded per visible pixel without a pre-pass; 0: 1 */
-} lightbin_costs;
-
-/* One way to light a view, and its costs a frame. */
-typedef struct lightbin_plan {
-    uint32_t size;
-    int32_t tiled; /* 0: every pixel evaluates every light, and all members up to tile_size mean nothing */
-    int32_t footprint, depth_test, slicing, tile_size;
-    double build_ns;    /* of building the lists, with z_bounds_ns if the plan has Z bounds */
-    double upload_ns;   /* of moving the lists to the GPU */
-    double evaluations; /* of a light at a pixel; with `overdraw` if the plan has no Z bounds */
-    double total_ns;    /* build_ns + upload_ns + evaluations * evaluation_ns */
-    uint64_t entries;   /* in all lists together */
-} lightbin_plan;
-
-/* Plans that were measured. */
-typedef struct lightbin_advice lightbin_advice;
-
-/* Measures on this machine what each way to light a view costs: every light at every pixel; tiles of the view's tile
- * size, of 2, 4 and 8 times that size and of the whole screen, with rectangles, silhouettes, and the depth tests that
- * the bounds allow and the program has. To be called once for each scene, as it takes as long as some hundreds of
- * builds. On success *advice is to be freed with lightbin_advice_destroy(). Errors: those of lightbin_bin().
- *
- * view    with the smallest tiles that the program would use
- * costs   null: the defaults
- * bounds  of the view's own tiles; null: no depth test is measured, and every pixel is taken to have something to light
- *         */
-LIGHTBIN_API lightbin_result lightbin_advise(const lightbin_view* view, const lightbin_lights* lights,
-                                             const lightbin_costs* costs, const lightbin_z_bounds* bounds,
-                                             const lightbin_allocator* allocator, lightbin_advice** advice);
-
-/* Measures, as lightbin_advise() does, the ways that need no depth pre-pass: tiles, clusters and z-bins.
- *
- * clusters, z_bins       the slices to measure each with: typically some dozens, and some hundreds
- * depths, columns, rows  columns * rows view depths of visible surfaces, at points spread evenly over the viewport, row
- *                        by row from its origin. NaN or infinity marks a point with nothing to light */
-LIGHTBIN_API lightbin_result lightbin_advise_slices(
-    const lightbin_view* view, const lightbin_lights* lights, const lightbin_slices* clusters,
-    const lightbin_slices* z_bins, const float* depths, int32_t columns, int32_t rows,
-    const lightbin_costs* costs, const lightbin_allocator* allocator, lightbin_advice** advice);
-LIGHTBIN_API void lightbin_advice_destroy(lightbin_advice* advice);
-
-/* Returns the number of plans; 0 if advice is null. */
-LIGHTBIN_API size_t lightbin_advice_count(const lightbin_advice* advice);
-
-/* Writes the plan with an index, which is less than lightbin_advice_count(); 0 is the cheapest. Set plan->size before.
- */
-LIGHTBIN_API lightbin_result lightbin_advice_plan(const lightbin_advice* advice, size_t index,
-                                                  lightbin_plan* plan);
-
-/* Returns the cheapest plan and a line for each part with what it saves or would cost, and a table of all plans, for
- * people to read. Valid as long as the advice; null if advice is null. */
-LIGHTBIN_API const char* lightbin_advice_text(const lightbin_advice* advice);
-LIGHTBIN_API const char* lightbin_advice_table(const lightbin_advice* advice);
 
 /* ---- Shapes ----
  *

@@ -38,23 +38,20 @@ module() {
     wasm-as --enable-simd --enable-sign-ext --enable-nontrapping-float-to-int \
         "$work/$name.sorted.wat" -o "$out/$name.wasm"
 }
-# Modules with vectors are only loaded where there are vectors. Shader text and advice, which few programs ask for, and
-# not in each frame, have modules of their own.
+# Modules with vectors are only loaded where there are vectors. Text, which few programs ask for, and not in each frame,
+# has a module of its own.
 left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY COVERAGE)
 small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
 vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
-text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'
-advice='advi[sc]e|view_text'
-# What plan_cull() and the functions of advice take.
+text='lightbin_(view_text|shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'
+# What view_text() and plan_cull() take.
 planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)'
 # shellcheck disable=SC2086  # a word a flag
 {
-    module lightbin "^(?!.*($text|$advice))" $small -DLIGHTBIN_NO_ADVICE &
-    module lightbin_simd "^(?!.*($text|$advice))" $small $vectors -DLIGHTBIN_NO_ADVICE
+    module lightbin "^(?!.*$text)" $small &
+    module lightbin_simd "^(?!.*$text)" $small $vectors
     wait $!
-    module advice "$advice|$planned" $small $vectors &
-    module shaders "$text|$planned" -Oz -DLIGHTBIN_NO_ADVICE
-    wait $!
+    module shaders "$text|$planned" -Oz
 }
 
 # The shader text of the adapter for three.js, whose options do not change, so that it needs no module for that.

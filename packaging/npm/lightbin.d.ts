@@ -16,11 +16,9 @@ export interface LoadOptions {
     simd?: boolean;
     /** The module lightbin_simd.wasm or lightbin.wasm, or where it is. Default: beside the package's JavaScript. */
     wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
-    /** The module shaders.wasm, which the first call that makes shader text loads, or where it is. If it can't be
+    /** The module shaders.wasm, which the first call that makes text loads, or where it is. If it can't be
      * loaded, the next call tries again. */
     shaders?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
-    /** The module advice.wasm, which each call of advise(), adviseSlices() and viewText() loads, or where it is. */
-    advice?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
 }
 
 /** Loads the module. Each call returns another one, with memory of its own. */
@@ -362,36 +360,6 @@ export interface CullPlan {
     passes: {pass: CullPass, x: number, y: number}[];
 }
 
-/** Costs that can't be measured here, in nanoseconds. */
-export interface Costs {
-    /** Of one light at one pixel. Default: 0.02. */
-    evaluationNs?: number;
-    /** Of the depth pre-pass and its reduction to Z bounds. */
-    zBoundsNs?: number;
-    uploadByteNs?: number;
-    /** Fragments shaded per visible pixel without a pre-pass. Default: 1. */
-    overdraw?: number;
-}
-
-/** One way to light a view, and its costs a frame. */
-export interface Plan {
-    /** If not, every pixel evaluates every light, and the next four members mean nothing. */
-    readonly tiled: boolean;
-    readonly footprint: 'rectangle' | 'silhouette';
-    readonly depthTest: 'no-depth-test' | 'interval' | 'box';
-    readonly slicing: Slicing;
-    readonly tileSize: number;
-    /** Of the lists, with zBoundsNs if the plan has Z bounds. */
-    readonly buildNs: number;
-    readonly uploadNs: number;
-    /** Of a light at a pixel. */
-    readonly evaluations: number;
-    /** buildNs + uploadNs + evaluations * evaluationNs */
-    readonly totalNs: number;
-    /** In all lists together. */
-    readonly entries: number;
-}
-
 /** One resource that the program has to bind. */
 export interface ShaderBinding {
     readonly name: string;
@@ -432,19 +400,8 @@ export interface Lightbin {
     /** Returns the constants, buffer sizes and dispatches of cullShader() for a view. Where only the camera moves, only
      * the constants change. The first call loads shaders.wasm. */
     planCull(view: View, options: CullShaderOptions, room: CullRoom): Promise<CullPlan>;
-    /**
-     * Measures on this machine, with vectors, what each way to light a view costs, cheapest first. For development: it
-     * loads advice.wasm, takes as long as some hundreds of builds, and needs a machine that has vectors. bounds: those of
-     * the view's own tiles; without them no depth test is measured.
-     */
-    advise(view: View, lights: Lights, options?: Costs & {bounds?: ZBounds}): Promise<Plan[]>;
-    /** The same of tiles, clusters and z-bins. depths: columns * rows view depths of visible surfaces, at points spread
-     * evenly over the viewport, row by row from its origin. NaN or Infinity marks a point with nothing to light. */
-    adviseSlices(view: View, lights: Lights, options: Costs & {
-        clusters: Slices, zBins: Slices, depths: Numbers, columns: number, rows: number,
-    }): Promise<Plan[]>;
     /** Returns what was read from a view's matrix as one line of text, with a question for each likely mistake. For
-     * development: it loads advice.wasm. */
+     * development: it loads shaders.wasm. */
     viewText(view: View): Promise<string>;
     /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
     lightRange(intensity: number, cutoff: number): number;

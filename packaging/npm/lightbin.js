@@ -772,31 +772,15 @@ function cull_plan(core, view, options, room) {
     }
 }
 
-/// The plans of the advice that ask(view, lights, costs) makes. The module is dropped afterwards, with all in it.
-function plans(core, view, lights, costs, ask) {
-    const copy = View.copy(core, view);
-    return core.scope(c => {
-        const advice = ask(copy[address], core.lights(lights), core.place('costs', costs, 'options'));
-        return Array.from({length: c.lightbin_advice_count(advice)}, (_, i) => {
-            const at = core.place('plan');
-            core.check(c.lightbin_advice_plan, advice, i, at);
-            const {size, tiled, ...plan} = core.read('plan', at);
-            return {tiled: tiled !== 0, ...plan};
-        });
-    });
-}
-
 class Lightbin {
     #core;
     #cores;
     #load_shaders;
     #shaders;
-    #load_advice;
-    constructor(exports, module, simd, load_shaders, load_advice) {
+    constructor(exports, module, simd, load_shaders) {
         this.#core = new Core(exports);
         this.#cores = [this.#core];
         this.#load_shaders = load_shaders;
-        this.#load_advice = load_advice;
         this.module = module;
         this.simd = simd;
         const version = exports.lightbin_version();
@@ -838,34 +822,17 @@ class Lightbin {
                 throw error;
             });
     }
-    async advise(view, lights, {bounds, ...costs} = {}) {
-        const core = await this.#load_advice();
-        return plans(core, view, lights, costs, (...given) => {
-            const placed = bounds == null ? 0 : core.bounds(bounds, 'bounds');
-            core.flush();
-            return core.create(core.c.lightbin_advise, ...given, placed, 0);
-        });
-    }
-    async adviseSlices(view, lights, {clusters, zBins, depths, columns, rows, ...costs} = {}) {
-        if (!(is_array(depths) && depths.length >= columns * rows))
-            refuse('depths must have columns * rows numbers', 'buffer-too-small');
-        const core = await this.#load_advice();
-        const slices = Object.entries({clusters, zBins}).map(([name, from]) => Slices.copy(core, from, name)[address]);
-        return plans(core, view, lights, costs, (view, lights, costs) => {
-            const at = core.c.stackAlloc(4);
-            core.stage(depths, 'depths', at, 0, columns * rows);
-            core.flush();
-            return core.create(core.c.lightbin_advise_slices, view, lights, ...slices, core.heap().getUint32(at, true),
-                whole(columns, 'columns'), whole(rows, 'rows'), costs, 0);
-        });
-    }
     async viewText(view) {
-        const core = await this.#load_advice(), copy = View.copy(core, view)[address];
-        return core.scope(c => {
-            const size = c.lightbin_view_text(copy, 0, 0) + 1, text = c.stackAlloc(size);
-            c.lightbin_view_text(copy, text, size);
-            return core.text(text);
-        });
+        const core = await this.#shader_core(), copy = View.copy(core, view);
+        try {
+            return core.scope(c => {
+                const size = c.lightbin_view_text(copy[address], 0, 0) + 1, text = c.stackAlloc(size);
+                c.lightbin_view_text(copy[address], text, size);
+                return core.text(text);
+            });
+        } finally {
+            copy.dispose();
+        }
     }
     lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(...reals({intensity, cutoff})); }
     lightWindow(distance, range) { return this.#core.c.lightbin_light_window(...reals({distance, range})); }
@@ -893,24 +860,16 @@ async function compile(wasm) {
 async function instantiate(module) {
     const {exports} = await WebAssembly.instantiate(module, {
         env: {out_of_memory, emscripten_notify_memory_growth: () => {}},
-        wasi_snapshot_preview1: {
-            proc_exit: out_of_memory,  // of abort(), where a size exceeds all memory
-            clock_time_get(clock, precision, at) {  // which advise() measures by
-                new DataView(exports.memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
-                return 0;
-            },
-        },
+        wasi_snapshot_preview1: {proc_exit: out_of_memory},  // of abort(), where a size exceeds all memory
     });
     exports._initialize?.();
     return exports;
 }
 
 export async function load(options = {}) {
-    const {simd = hasSimd(), wasm, shaders, advice} = only(options, ['simd', 'wasm', 'shaders', 'advice'], 'options');
+    const {simd = hasSimd(), wasm, shaders} = only(options, ['simd', 'wasm', 'shaders'], 'options');
     const module = await compile(wasm ?? (simd ? new URL('./lightbin_simd.wasm', import.meta.url)
                                                : new URL('./lightbin.wasm', import.meta.url)));
     const load_shaders = async () => instantiate(await compile(shaders ?? new URL('./shaders.wasm', import.meta.url)));
-    const load_advice = async () =>
-        new Core(await instantiate(await compile(advice ?? new URL('./advice.wasm', import.meta.url))));
-    return new Lightbin(await instantiate(module), module, simd, load_shaders, load_advice);
+    return new Lightbin(await instantiate(module), module, simd, load_shaders);
 }

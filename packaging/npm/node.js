@@ -8,8 +8,7 @@ export {LightbinError, hasSimd} from './lightbin.js';
 const file = name => readFile(new URL(name, import.meta.url));
 
 export function load(options) {
-    const {simd = hasSimd(), wasm, shaders, advice, ...others} = options ?? {};
+    const {simd = hasSimd(), wasm, shaders, ...others} = options ?? {};
     return load_module({simd, wasm: wasm ?? file(simd ? './lightbin_simd.wasm' : './lightbin.wasm'),
-                        shaders: shaders ?? (() => file('./shaders.wasm')),
-                        advice: advice ?? (() => file('./advice.wasm')), ...others});
+                        shaders: shaders ?? (() => file('./shaders.wasm')), ...others});
 }

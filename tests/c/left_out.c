@@ -50,7 +50,6 @@ int main(void) {
     lightbin_view* view = NULL;
     lightbin_binner* binner = NULL;
     lightbin_shader* shader = NULL;
-    lightbin_advice* advice = NULL;
     lightbin_budget* budget = NULL;
     lightbin_grid_constants constants;
     size_t count = 0;
@@ -123,7 +122,6 @@ int main(void) {
     refuses(lightbin_cull_shader(NULL, NULL, &shader), "LIGHTBIN_NO_CULL_SHADERS");
     refuses(lightbin_plan_cull(view, NULL, 0, 0, NULL, NULL, NULL), "LIGHTBIN_NO_CULL_SHADERS");
     refuses(lightbin_shader_edges(view, NULL, 0, &count), "LIGHTBIN_NO_CULL_SHADERS");
-    refuses(lightbin_advise(view, &given, NULL, NULL, NULL, &advice), "LIGHTBIN_NO_ADVICE");
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
     puts("every check passed");

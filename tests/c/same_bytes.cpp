@@ -3,7 +3,6 @@
 // their own; this file includes both headers, as a program may that moves from one side to the other.
 #include <lightbin/lightbin.h>
 
-#include <lightbin/advise.hpp>
 #include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
 #include <lightbin/encode.hpp>
@@ -152,7 +151,6 @@ struct Deleter {
     void operator()(lightbin_budget* budget) const { lightbin_budget_destroy(budget); }
     void operator()(lightbin_grid_union* grid_union) const { lightbin_grid_union_destroy(grid_union); }
     void operator()(lightbin_shader* shader) const { lightbin_shader_destroy(shader); }
-    void operator()(lightbin_advice* advice) const { lightbin_advice_destroy(advice); }
 };
 template <class Handle> using Owned = std::unique_ptr<Handle, Deleter>;
 
@@ -830,54 +828,6 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
     CHECK(refused > 20);
     static_assert(sizeof(lightbin_cull_totals) == sizeof(CullTotals));
     static_assert(offsetof(lightbin_cull_totals, visible) == offsetof(CullTotals, visible));
-}
-
-TEST_CASE("C: advice weighs the plans of C++, with their entries") {
-    Random random(10);
-    Scene scene(random);
-    scene.lamps.resize(60);
-    const auto view = view_of(scene);
-    const lightbin_lights lights = lights_of(scene, 30, true);
-    auto bounds = sized<lightbin_z_bounds>();
-    bounds.min = scene.min.data(), bounds.max = scene.max.data(), bounds.tiles = scene.min.size();
-    lightbin_advice* advice = nullptr;
-    const lightbin_result result = lightbin_advise(view.get(), &lights, nullptr, &bounds, nullptr, &advice);
-    REQUIRE_MESSAGE(result.error == LIGHTBIN_OK, text(result));
-    const Owned<lightbin_advice> owned(advice);
-    const auto expected =
-        *advise(cpp_view_of(scene),
-                world_space(scene.lamps, matrix(scene.view_matrix, MatrixLayout::column_major),
-                            [&](const Lamp& lamp) {
-                                const bool is_spot = &lamp - scene.lamps.data() >= 30;
-                                return is_spot ? scene.spot(lamp) : Spot::whole(scene.sphere(lamp));
-                            }),
-                {}, {scene.min, scene.max});
-    REQUIRE(lightbin_advice_count(advice) == expected.plans().size());
-    for (std::size_t i = 0; i < expected.plans().size(); ++i) {  // the order is that of times, which differ
-        auto plan = sized<lightbin_plan>();
-        REQUIRE(lightbin_advice_plan(advice, i, &plan).error == LIGHTBIN_OK);
-        int found = 0;
-        for (const Plan& other : expected.plans())
-            found += other.tiled == (plan.tiled != 0) && other.tile_size == plan.tile_size &&
-                     other.entries == plan.entries && other.evaluations == plan.evaluations &&
-                     static_cast<std::int32_t>(other.footprint) == plan.footprint &&
-                     static_cast<std::int32_t>(other.depth_test) == plan.depth_test;
-        CHECK(found == 1);
-    }
-    CHECK(std::string(lightbin_advice_text(advice)).find("ms a frame") != std::string::npos);
-    CHECK(std::string(lightbin_advice_table(advice)).find("silhouette") != std::string::npos);
-    lightbin_slices *clusters = nullptr, *z_bins = nullptr;
-    REQUIRE(lightbin_slices_exponential(8, 5, 100, 0, nullptr, &clusters).error == LIGHTBIN_OK);
-    REQUIRE(lightbin_slices_linear(64, 0, 100, 0, nullptr, &z_bins).error == LIGHTBIN_OK);
-    const std::vector<float> depths(16, 9.0f);
-    lightbin_advice* sliced = nullptr;
-    REQUIRE(lightbin_advise_slices(view.get(), &lights, clusters, z_bins, depths.data(), 4, 4, nullptr,
-                                   nullptr, &sliced)
-                .error == LIGHTBIN_OK);
-    CHECK(std::string(lightbin_advice_table(sliced)).find("z_bins") != std::string::npos);
-    lightbin_advice_destroy(sliced);
-    lightbin_slices_destroy(clusters);
-    lightbin_slices_destroy(z_bins);
 }
 
 TEST_CASE("C: shapes are the lights of C++") {

@@ -19,7 +19,7 @@ compile() {
 code_of() {
     size -A "$work/$1.o" | awk '$1 ~ /^\.text/ { sum += $2 } END { print sum }'
 }
-all="SPOTS BOXES U16 SILHOUETTES INTERVAL BOX SPLIT_BOX CLUSTERS Z_BINS TRANSPARENCY BITS COVERAGE BUDGETS THREADS SHADERS REDUCE_SHADERS CULL_SHADERS ADVICE"
+all="SPOTS BOXES U16 SILHOUETTES INTERVAL BOX SPLIT_BOX CLUSTERS Z_BINS TRANSPARENCY BITS COVERAGE BUDGETS THREADS SHADERS REDUCE_SHADERS CULL_SHADERS"
 
 if [ "${1-}" = --check ]; then
     compile whole
@@ -34,7 +34,7 @@ if [ "${1-}" = --check ]; then
 
     # Without exceptions and RTTI.
     g++ -std=c++20 -O1 -fno-exceptions -fno-rtti -Wall -Wextra -Werror -I "$here/../../include" -DLIGHTBIN_NO_SIMD \
-        -DLIGHTBIN_NO_ADVICE -c "$here/../../packaging/lightbin.cpp" -o "$work/no_exceptions.o"
+        -c "$here/../../packaging/lightbin.cpp" -o "$work/no_exceptions.o"
     cc -std=c99 -I "$here/../../include" -c "$here/contract.c" -o "$work/contract.o"
     g++ "$work/contract.o" "$work/no_exceptions.o" -o "$work/contract"
     "$work/contract" --no-exceptions
@@ -72,6 +72,6 @@ for part in $all; do
 done
 row kinds "spots and boxes" SPOTS BOXES
 row depth "the three depth tests" INTERVAL BOX SPLIT_BOX
-row texts "shader text and advice" SHADERS REDUCE_SHADERS CULL_SHADERS ADVICE
+row texts "shader text" SHADERS REDUCE_SHADERS CULL_SHADERS
 # shellcheck disable=SC2086  # a word a part
 row plain "all of these: plain tiles of spheres" $all

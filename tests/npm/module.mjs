@@ -689,48 +689,6 @@ test('shaders that make lists of lights on the GPU say what they refuse', async 
     assert.equal(lightbin.allocations, 0);
 });
 
-test('advice weighs the ways to light a view by the lists that they make', async () => {
-    const spheres = random_spheres(200), min = new Float32Array(400).fill(5), max = new Float32Array(400).fill(30);
-    for (const lightbin of modules) {
-        const view = lightbin.view(square), array = lightbin.floats(800), lights = {spheres: {array}};
-        const [clusters, zBins] = [8, 100].map(count => lightbin.exponentialSlices({count, first: 1, last: 60}));
-        array.array.set(spheres);
-        const live = lightbin.allocations, before = spheres.length;
-        const flat = await lightbin.advise(view, lights);
-        const bounded = await lightbin.advise(view, lights, {bounds: {min, max}, zBoundsNs: 1e9});
-        const sliced = await lightbin.adviseSlices(view, lights,
-            {clusters, zBins, depths: max, columns: 20, rows: 20, evaluationNs: 0.5});
-        assert.equal(lightbin.allocations, live);
-        for (const [plans, cost] of [[flat, 0.02], [bounded, 0.02], [sliced, 0.5]]) {
-            assert.ok(plans.length > 5 && plans.every((plan, i) => i === 0 || plans[i - 1].totalNs <= plan.totalNs));
-            for (const {totalNs, buildNs, uploadNs, evaluations} of plans)
-                assert.ok(Math.abs(totalNs - buildNs - uploadNs - cost * evaluations) <= 1e-9 * totalNs);
-        }
-        assert.equal(flat.find(plan => !plan.tiled).evaluations, before / 4 * 320 * 320);
-        const ways = [[flat, {}, {}], [bounded, {depthTest: 'interval'}, {bounds: {min, max}}],
-                      [bounded, {depthTest: 'box'}, {bounds: {min, max}}], [sliced, {slicing: 'z-bins'}, {slices: zBins}],
-                      [sliced, {slicing: 'clusters', depthTest: 'box'}, {slices: clusters}]];
-        for (const [plans, options, inputs] of ways) {
-            const wanted = {tiled: true, tileSize: 16, footprint: 'rectangle', depthTest: 'no-depth-test',
-                            slicing: 'no-slicing', ...options};
-            const plan = plans.find(plan => Object.entries(wanted).every(([key, value]) => plan[key] === value));
-            const binner = lightbin.binner(options);
-            assert.equal(plan?.entries, binner.bin(view, lights, inputs).ids.length, JSON.stringify(options));
-            assert.equal(plan.buildNs > 1e9, 'bounds' in inputs);
-            binner.dispose();
-        }
-        await assert.rejects(lightbin.adviseSlices(view, lights, {clusters, zBins, depths: max, columns: 21, rows: 20}),
-            {code: 'buffer-too-small'});
-        await assert.rejects(lightbin.adviseSlices(view, lights, {clusters, depths: max, columns: 20, rows: 20}),
-            {message: /^zBins must be slices/});
-        await assert.rejects(lightbin.advise(view, lights, {overdrawn: 2}), {message: /there is no 'overdrawn'/});
-        for (const made of [clusters, zBins, array]) made.dispose();
-        view.dispose();
-        await assert.rejects(lightbin.advise(view, lights), {message: /^view: it was disposed of/});
-        assert.equal(lightbin.allocations, 0);
-    }
-});
-
 test('a worker runs the compiled module that it was sent', async () => {
     const worker = new Worker(`
         const {parentPort, workerData: {entry, module, square, spheres}} = require('node:worker_threads');

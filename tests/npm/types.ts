@@ -19,8 +19,7 @@ export async function use(gl: WebGL2RenderingContext) {
     grid.append([grid]);
     const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});
     gl.bufferData(gl.ARRAY_BUFFER, view.shaderEdges(), gl.STREAM_DRAW);
-    const [plan] = await lightbin.advise(view, {spheres}, {bounds: {max: [1]}, overdraw: 2});
-    binner.bin(view, {spheres}, {bounds: {max: [plan.entries]}});
+    binner.bin(view, {spheres}, {bounds: {max: [1]}});
     await lightbin.cullShader({language: 'wgsl', pass: 'fill', slots: {lists: {binding: 1}}});
     // @ts-expect-error
     await lightbin.cullShader({language: 'wgsl', pass: 'draw'});

@@ -193,27 +193,11 @@ test('every control can be reached by Tab, is named, and shows its focus', async
         reached.set(id, [name.trim(), outline]);
     }
     for (const id of ['stage', 'fold', 'help', 'scene', 'view', 'lights', 'move', 'open', 'method', 'renderer', 'tile',
-        'look', 'size', 'stops', 'compare', 'advise']) {
+        'look', 'size', 'stops', 'compare']) {
         assert.ok(reached.has(id), `${id} is not reached`);
         assert.notEqual(reached.get(id)[0], '', `${id} has no name`);
         assert.notEqual(reached.get(id)[1], 'none', `${id} does not show its focus`);
     }
-});
-
-test('advise() gives a table, and a row can be taken', async t => {
-    const page = await browser.open(t, small + '&move=0');
-    await page.locator('#advise').click();
-    await page.locator('#advice table').waitFor();
-    assert.equal(await page.locator('#advice tr.best').count(), 1);
-    const plans = await page.locator('#advice tbody button').allTextContents();
-    for (const plan of ['tiles', 'silhouettes', 'Z bounds, interval', 'Z bounds, box', 'z-bins', 'clusters, boxes'])
-        assert.equal(plans.filter(text => text.endsWith(` px, ${plan}`)).length, 1, plan);
-    assert.ok(plans.includes('every light'));
-    const row = page.locator('#advice tbody button', {hasText: /px, Z bounds, box$/});
-    const tile = parseInt(await row.textContent(), 10);
-    await row.click();
-    await page.waitForFunction(tile => document.getElementById('tile_out').textContent === `${tile} pixels`, tile);
-    assert.equal(await page.locator('#method').inputValue(), 'box');
 });
 
 test('a layer of the plot can be hidden', async t => {

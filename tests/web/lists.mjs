@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // node tests/web/lists.mjs FOLDER LISTS: what the page in FOLDER makes of its scenes with the npm package: the lists that
-// this machine's renderer makes, whose output LISTS is; what the GPU makes them of; advice; sentences where
-// something is wrong; and all files together are small enough for a page.
+// this machine's renderer makes, whose output LISTS is; what the GPU makes them of; sentences where something is wrong;
+// and all files together are small enough for a page.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -11,8 +11,8 @@ const [folder, lists] = process.argv.slice(2);
 const of_page = name => import(pathToFileURL(path.resolve(folder, name)));
 const bytes = name => fs.readFileSync(path.join(folder, name));
 const [{load}, {Lighting}, {start}] = await Promise.all(['lightbin/lightbin.js', 'lighting.js', 'scenes.js'].map(of_page));
-const [wasm, advice_module, shaders] = ['lightbin_simd', 'advice', 'shaders'].map(name => bytes(`lightbin/${name}.wasm`));
-const lightbin = await load({wasm, advice: advice_module, shaders});
+const [wasm, shaders] = ['lightbin_simd', 'shaders'].map(name => bytes(`lightbin/${name}.wasm`));
+const lightbin = await load({wasm, shaders});
 const scenes = await start(bytes('scenes.wasm')), lighting = new Lighting(lightbin, scenes);
 const settings = {width: 640, height: 360, tile_size: 16, clip: 'webgl', method: 'none'};
 
@@ -110,33 +110,6 @@ async function plans_for_gpu() {
     return 'the GPU gets the same lights and slices';
 }
 
-async function advice() {
-    const seen = {...settings, camera: scenes.make('city', 500).cameras[0]};
-    const {tiles_x, tiles_y} = lighting.view(seen), all = depth => new Float32Array(tiles_x * tiles_y).fill(depth);
-    const bounds = {min: all(20), max: all(60)};
-    const without_depth = await lighting.advise(seen), plans = await lighting.advise(seen, bounds, 1000);
-    for (const some of [without_depth, plans]) {
-        assert.ok(some.length > 5 && some.every((plan, i) => i === 0 || some[i - 1].totalNs <= plan.totalNs));
-        assert.equal(some.find(plan => !plan.tiled).evaluations, 500 * settings.width * settings.height);
-    }
-    assert.ok(without_depth.every(plan => !plan.tiled
-        || plan.depthTest === 'no-depth-test' && plan.slicing === 'no-slicing'));
-
-    // A plan has as many entries as the lists that the page makes of it, and a pre-pass costs what it took.
-    for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
-        const sliced = method === 'z_bins' || method === 'clusters';
-        const wanted = {
-            tiled: true, footprint: 'rectangle', tileSize: seen.tile_size,
-            depthTest: method === 'clusters' ? 'box' : sliced || method === 'none' ? 'no-depth-test' : method,
-            slicing: sliced ? method.replace('_', '-') : 'no-slicing',
-        };
-        const plan = plans.find(plan => Object.entries(wanted).every(([name, value]) => plan[name] === value));
-        assert.equal(plan.entries, lighting.frame({...seen, method}, bounds).entries, method);
-        assert.equal(plan.buildNs > 1e9, method === 'interval' || method === 'box', method);
-    }
-    return `advise() weighs ${plans.length} plans`;
-}
-
 function small() {
     const sizes = fs.readdirSync(folder, {recursive: true}).map(name => fs.statSync(path.join(folder, name)))
         .filter(file => file.isFile()).map(file => file.size), sum = sizes.reduce((a, b) => a + b);
@@ -154,5 +127,5 @@ function frees() {
     return `${live} blocks of memory are kept`;
 }
 
-for (const test of [no_scene, same_lists, sentences, plans_for_gpu, advice, small, frees])
+for (const test of [no_scene, same_lists, sentences, plans_for_gpu, small, frees])
     console.log(`lists: ${await test()}`);

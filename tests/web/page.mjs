@@ -189,8 +189,6 @@ for (const [width, height] of [[390, 844], [360, 640], [844, 390]])
         const page = await browser.open(t, small, {width, height, touch: true});
         await screenshot(page, `phone_${width}_folded`);
         if (await page.locator('#fold').getAttribute('aria-expanded') === 'false') await page.locator('#fold').tap();
-        await page.locator('#advise').tap();
-        await page.locator('#advice table').waitFor();
         const problems = await page.evaluate(() => {
             const kinds = '#fold, #panel :is(select, button, input[type=range], .check)';
             const controls = [...document.querySelectorAll(kinds)];

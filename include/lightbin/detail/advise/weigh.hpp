@@ -201,13 +201,6 @@ auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orth
     return lights(moved_aside(joined.first, aside, orthographic), moved_aside(joined.rest, aside, orthographic));
 }
 
-/// The Binner that weigh() measures with lights of a type, and whether the program has the code for options. The file
-/// that implements lightbin.h has specialisations.
-template <class LightRange, Options options> struct WeighedBinner : Binner<options> {};
-template <class LightRange> constexpr bool has_code(const Options&) {
-    return true;
-}
-
 /// Measures the options in each row of a table on grids of several tile sizes.
 ///
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
@@ -224,7 +217,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         grids.emplace_back(view, bounds, size);
     grids.emplace_back(view, bounds, whole);
     auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::tuple<WeighedBinner<LightRange, weighed_options(base, table[i])>...>();
+        return std::tuple<Binner<weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
     // Builds a plan's lists and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
     // first call also counts the list entries and how often pixels evaluate a light.
@@ -237,7 +230,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
                 options.depth_test != DepthTest::none && options.slicing == Slicing::none;
             const Slices& by = options.slicing == Slicing::clusters ? slices.clusters : slices.z_bins;
             const auto start = Clock::now();
-            const auto built = std::get<WeighedBinner<LightRange, options>>(binners).bin(
+            const auto built = std::get<Binner<options>>(binners).bin(
                 grid->view, moved, inputs_for<options>(grid->bounds, by));
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
@@ -269,7 +262,6 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
-            if (!has_code<LightRange>(options)) continue;
             const ZBounds& given = grid.bounds;
             const bool lacks_bounds = options.depth_test == DepthTest::split_box
                                           ? given.gap_min.empty() || given.gap_max.empty()

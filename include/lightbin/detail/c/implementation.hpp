@@ -13,7 +13,6 @@
 //   LIGHTBIN_NO_SHADERS                                             all shader text
 //   LIGHTBIN_NO_REDUCE_SHADERS                                      lightbin_reduce_shader()
 //   LIGHTBIN_NO_CULL_SHADERS                                        lightbin_cull_shader(), lightbin_plan_cull()
-//   LIGHTBIN_NO_ADVICE                                              lightbin_advise(), lightbin_advise_slices()
 //   LIGHTBIN_NO_SIMD, LIGHTBIN_NO_SCALAR                            the vector kernels; the scalar ones (docs/install.md)
 #pragma once
 
@@ -36,9 +35,6 @@
 #endif
 #if !defined(LIGHTBIN_NO_CULL_SHADERS)
 #include <lightbin/detail/c/cull_shaders.hpp>
-#endif
-#if !defined(LIGHTBIN_NO_ADVICE)
-#include <lightbin/detail/c/advice.hpp>
 #endif
 #include <lightbin/detail/c/left_out.hpp>
 

@@ -73,28 +73,6 @@ LIGHTBIN_WITHOUT("LIGHTBIN_NO_CULL_SHADERS",
                  lightbin_shader_slabs(const lightbin_slices*, lightbin_edges*, std::size_t, std::size_t*))
 #endif
 
-#if defined(LIGHTBIN_NO_ADVICE)
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_ADVICE",
-                 lightbin_advise(const lightbin_view*, const lightbin_lights*, const lightbin_costs*,
-                                 const lightbin_z_bounds*, const lightbin_allocator*, lightbin_advice**))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_ADVICE",
-                 lightbin_advise_slices(const lightbin_view*, const lightbin_lights*, const lightbin_slices*,
-                                        const lightbin_slices*, const float*, std::int32_t, std::int32_t,
-                                        const lightbin_costs*, const lightbin_allocator*, lightbin_advice**))
-void lightbin_advice_destroy(lightbin_advice*) {}
-std::size_t lightbin_advice_count(const lightbin_advice*) {
-    return 0;
-}
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_ADVICE",
-                 lightbin_advice_plan(const lightbin_advice*, std::size_t, lightbin_plan*))
-const char* lightbin_advice_text(const lightbin_advice*) {
-    return nullptr;
-}
-const char* lightbin_advice_table(const lightbin_advice*) {
-    return nullptr;
-}
-#endif
-
 }  // extern "C"
 
 #undef LIGHTBIN_WITHOUT
