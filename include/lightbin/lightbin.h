@@ -30,7 +30,7 @@
  *             lightbin_error_text() writes a sentence. After an error nothing was written to the caller's memory and no
  *             handle was made or changed, unless the function says otherwise; the next call works as usual. Any
  *             function may return LIGHTBIN_OUT_OF_MEMORY, LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_WRONG_SIZE,
- *             LIGHTBIN_OVERLAP, LIGHTBIN_LEFT_OUT and LIGHTBIN_NOT_A_VALUE; comments list all others.
+ *             LIGHTBIN_LEFT_OUT and LIGHTBIN_NOT_A_VALUE; comments list all others.
  *   Structs   A struct whose first member is `size` is passed with size = sizeof of the struct, and all members that
  *             are not set must be 0, which is the default of each. So a program goes on working with a later lightbin
  *             whose structs have more members. A struct that is newer than the library works as long as the members
@@ -42,8 +42,8 @@
  *             one ends in _destroy, and accepts a null pointer. Different handles may be used on different threads at
  *             the same time; one handle may be used by one thread at a time, except that a view or slices may be read
  *             by several calls at once.
- *   Pointers  Null where something is needed, sizes too small, and memory to be written that overlaps other memory of
- *             the call are refused; lightbin_result.name says which. Pointers are not kept after the call.
+ *   Pointers  Null where something is needed, and sizes too small, are refused; lightbin_result.name says which. Memory
+ *             to be written must not overlap other memory of the call. Pointers are not kept after the call.
  *   Memory    Handles keep their memory for the next call, so that calls allocate nothing once warm. If memory runs
  *             out, the error is LIGHTBIN_OUT_OF_MEMORY. (Where the implementing file is compiled without exceptions, as
  *             by -fno-exceptions, the program is ended by abort() instead.)
@@ -83,7 +83,6 @@ typedef enum lightbin_error {
     LIGHTBIN_OUT_OF_MEMORY = 1,
     LIGHTBIN_NULL_ARGUMENT = 2,    /* a pointer that the call needs is null */
     LIGHTBIN_WRONG_SIZE = 3,       /* a struct's `size` is not that of a version that the library knows */
-    LIGHTBIN_OVERLAP = 4,          /* memory to be written overlaps other memory of the call */
     LIGHTBIN_LEFT_OUT = 5,         /* the program was compiled without this part, see docs/c.md */
     LIGHTBIN_NOT_A_VALUE = 6,      /* a number that is no value of its enum, or outside of its range */
     LIGHTBIN_STRIDE_TOO_SMALL = 7, /* a stride is less than the element that it steps over */
@@ -720,13 +719,14 @@ typedef struct lightbin_cut {
  * same, those with the lower id stay. *limited is valid until the next call with this budget, and no longer than
  * `grid`: if nothing is left out, it refers to the memory of `grid`.
  *
+ * grid       not one that this budget made
  * weights    one for each light, by its id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too. NaN weighs least
  * per_cell   the most lights in the list of a cell; LIGHTBIN_NO_LIMIT: any number
  * per_frame  the most entries in all lists together; LIGHTBIN_NO_LIMIT: any number
  * limited    may be `grid`, which then is overwritten
  * cut        what was left out; null: is not wanted. Its array is valid as long as *limited
  *
- * Errors: LIGHTBIN_TOO_FEW_WEIGHTS, fewer than lights; LIGHTBIN_OVERLAP, a grid that this budget made. */
+ * Errors: LIGHTBIN_TOO_FEW_WEIGHTS, fewer than lights. */
 #define LIGHTBIN_NO_LIMIT 0xffffffffu
 LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid,
                                                  const float* weights, size_t weight_count, uint32_t per_cell,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the C side's functions do to their arguments and results: structs with a size, enums, null pointers, overlaps.
+// What the C side's functions do to their arguments and results: structs with a size, enums, null pointers.
 #pragma once
 
 #include <lightbin/detail/c/memory.hpp>
@@ -109,8 +109,6 @@ inline const char* sentence_of(std::int32_t error) {
     case LIGHTBIN_WRONG_SIZE:
         return "`size` must be sizeof of the struct, {available}, and is {needed}; of a newer lightbin's "
                "struct all that this one does not know must be 0";
-    case LIGHTBIN_OVERLAP:
-        return "this memory is to be written, and overlaps other memory of the call";
     case LIGHTBIN_LEFT_OUT:
         return "lightbin was compiled without this part: the define of this name leaves it out";
     case LIGHTBIN_NOT_A_VALUE:
@@ -224,21 +222,6 @@ template <class... Results> lightbin_result first_error(const Results&... result
     lightbin_result first = succeeded();
     static_cast<void>(((first = results, results.error != LIGHTBIN_OK) || ...));
     return first;
-}
-
-/// Memory of the caller.
-struct Bytes {
-    const void* first;
-    std::uint64_t bytes;
-};
-
-inline bool overlap(const Bytes& a, const Bytes& b) {
-    const auto begin = [](const Bytes& extent) {
-        return std::uint64_t{reinterpret_cast<std::uintptr_t>(extent.first)};
-    };
-    if (a.first == nullptr || b.first == nullptr || a.bytes == 0 || b.bytes == 0) return false;
-    return begin(a) < detail::sum_of_sizes(begin(b), b.bytes) &&
-           begin(b) < detail::sum_of_sizes(begin(a), a.bytes);
 }
 
 /// Returns the matrix that the caller's sixteen numbers make, or why they are refused.

@@ -198,7 +198,6 @@ lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbi
     const lightbin_result result =
         first_error(check_size(opaque, "opaque"), check_size(transparent, "transparent"));
     if (result.error != LIGHTBIN_OK) return result;
-    if (opaque == transparent) return refused(LIGHTBIN_OVERLAP, "transparent");
     return with_call(binner, view, lights, inputs, [&]([[maybe_unused]] const Call& call) {
 #if defined(LIGHTBIN_NO_TRANSPARENCY)
         return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_TRANSPARENCY");
@@ -224,12 +223,6 @@ lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* 
     if (result.error != LIGHTBIN_OK) return result;
     if (words == nullptr && word_count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "words");
     return with_call(binner, view, lights, inputs, [&](const Call& call) {
-        const Bytes memory = {words, lightbin::detail::product_of_sizes(word_count, sizeof *words)};
-        for (const std::span<const float> bound : {call.bounds.min, call.bounds.max, call.bounds.gap_min,
-                                                   call.bounds.gap_max, call.bounds.transparent_max})
-            if (overlap(memory, {bound.data(), bound.size_bytes()}))
-                return refused(LIGHTBIN_OVERLAP, "words");
-        if (call.lights.overlaps(memory)) return refused(LIGHTBIN_OVERLAP, "words");
         if constexpr (!has_bits) {
             return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BITS");
         } else {

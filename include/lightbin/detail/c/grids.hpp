@@ -55,12 +55,6 @@ lightbin_result with_grids(const lightbin_grid* first, const char* first_name, c
     });
 }
 
-/// Whether memory of the caller overlaps the ranges or the ids of a grid.
-template <class Id> bool overlaps(const LightGrid<Id>& grid, const Bytes& memory) {
-    return overlap(memory, {grid.ranges().data(), grid.ranges().size_bytes()}) ||
-           overlap(memory, {grid.ids().data(), grid.ids().size_bytes()});
-}
-
 /// Returns the ListFormat that the caller describes, or why it is refused.
 inline lightbin_result read_format(const lightbin_format* given, ListFormat& format, const char* name) {
     lightbin_format known;
@@ -84,7 +78,6 @@ struct lightbin_budget {
     lightbin::c::Memory memory;
     lightbin::Budget<std::uint32_t> wide = {};
     lightbin::Budget<std::uint16_t> narrow = {};
-    const void* made = nullptr;  ///< the ids of the grid that the last call made in the memory of the handle
 };
 
 /// A GridUnion for each width of ids.
@@ -92,7 +85,6 @@ struct lightbin_grid_union {
     lightbin::c::Memory memory;
     lightbin::GridUnion<std::uint32_t> wide = {};
     lightbin::GridUnion<std::uint16_t> narrow = {};
-    const void* made = nullptr;  ///< the ids of the grid that the last call made
 };
 
 namespace lightbin {
@@ -111,12 +103,8 @@ template <class Id>
 lightbin_result copy_grid(const LightGrid<Id>& from, const LightGrid<Id>* before, lightbin_range* ranges,
                           std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity,
                           lightbin_grid* grid) {
-    const Bytes to[] = {{ranges, detail::product_of_sizes(range_capacity, sizeof *ranges)},
-                        {ids, detail::product_of_sizes(id_capacity, sizeof(Id))}};
     if (ranges == nullptr && !from.ranges().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ranges");
     if (ids == nullptr && !from.ids().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ids");
-    if (overlaps(from, to[0])) return refused(LIGHTBIN_OVERLAP, "ranges");
-    if (overlaps(from, to[1]) || overlap(to[0], to[1])) return refused(LIGHTBIN_OVERLAP, "ids");
     const std::span<ListRange> all_ranges = {reinterpret_cast<ListRange*>(ranges),
                                              static_cast<std::size_t>(range_capacity)};
     const std::span<Id> all_ids = {static_cast<Id*>(ids), static_cast<std::size_t>(id_capacity)};
@@ -175,14 +163,9 @@ lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const ligh
     if (result.error != LIGHTBIN_OK) return result;
     return with_grids(first, "first", second, "second", "second.id_bytes",
                       [&]<class Id>(const lightbin::LightGrid<Id>& one, const auto& other) {
-                          if (!one.ids().empty() && one.ids().data() == grid_union->made)
-                              return refused(LIGHTBIN_OVERLAP, "first");
-                          if (!other.ids().empty() && other.ids().data() == grid_union->made)
-                              return refused(LIGHTBIN_OVERLAP, "second");
                           return guarded(grid_union->memory, [&] {
                               const auto made = of_width<Id>(*grid_union).unite(one, other);
                               if (!made) return refused(made.error());
-                              grid_union->made = made->ids().data();
                               write_grid(*made, grid);
                               return succeeded();
                           });
@@ -211,13 +194,10 @@ lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid
         first_error(check_size(limited, "limited"), cut != nullptr ? check_size(cut, "cut") : succeeded());
     if (result.error != LIGHTBIN_OK) return result;
     return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& whole) {
-        if (!whole.ids().empty() && whole.ids().data() == budget->made)
-            return refused(LIGHTBIN_OVERLAP, "grid");
         return guarded(budget->memory, [&] {
             const auto made =
                 of_width<Id>(*budget).limit(whole, {weights, weight_count}, {per_cell, per_frame});
             if (!made) return refused(made.error());
-            if (made->entries_cut > 0) budget->made = made->grid.ids().data();
             write_grid(made->grid, limited);
             if (cut != nullptr)
                 write(lightbin_cut{0, made->entries_cut, made->cut_in_cell.data(), made->cut_in_cell.size()},
@@ -235,9 +215,6 @@ lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t*
     if (listed == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "listed");
     if (entries == nullptr && capacity > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "entries");
     return with_grid(grid, "grid", [&](const auto& from) {
-        const Bytes to = {entries, lightbin::detail::product_of_sizes(capacity, sizeof *entries)};
-        if (overlaps(from, to) || overlap(to, {from.ranks().order.data(), from.ranks().order.size_bytes()}))
-            return refused(LIGHTBIN_OVERLAP, "entries");
         const auto count = count_entries(from, std::span<std::uint32_t>(entries, capacity));
         if (!count) return refused(count.error());
         *listed = *count;
@@ -277,7 +254,6 @@ lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format
     if (result.error != LIGHTBIN_OK) return result;
     return with_grid(grid, "grid", [&](const auto& from) {
         if (out == nullptr && out_bytes > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "out");
-        if (overlaps(from, {out, out_bytes})) return refused(LIGHTBIN_OVERLAP, "out");
         const auto made = lightbin::encode(
             from, known,
             std::span<std::byte>(static_cast<std::byte*>(out), static_cast<std::size_t>(out_bytes)));

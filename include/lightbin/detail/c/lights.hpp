@@ -217,24 +217,6 @@ struct CallLights {
                                                                                    {spots(), boxes()}};
     }
 
-    /// Whether memory of the caller overlaps that of the lights.
-    bool overlaps(const Bytes& memory) const {
-        const auto meets = [&](const lightbin_floats& floats, std::size_t count, std::size_t each) {
-            if (count == 0 || floats.first == nullptr) return false;
-            const std::uint64_t before_last = detail::product_of_sizes(count - 1, floats.stride);
-            return overlap(memory, {floats.first, detail::sum_of_sizes(before_last, each * sizeof(float))});
-        };
-        const lightbin_spheres& balls = given.spheres;
-        const lightbin_spots& cones = given.spots;
-        const lightbin_boxes& rooms = given.boxes;
-        return meets(balls.centre, balls.count, 3) || meets(balls.radius, balls.count, 1) ||
-               meets(cones.centre, cones.count, 3) || meets(cones.radius, cones.count, 1) ||
-               meets(cones.axis, cones.count, 3) || meets(cones.cosine, cones.count, 1) ||
-               meets(rooms.centre, rooms.count, 3) || meets(rooms.radius, rooms.count, 1) ||
-               meets(rooms.box_centre, rooms.count, 3) || meets(rooms.half_axes, rooms.count, 9) ||
-               meets(rooms.taper, rooms.count, 1);
-    }
-
 private:
     template <class Given> Lights<LightCount, InPlace<Given>> in_place(const Given& from) const {
         return {{from.count}, {from}, to_view ? &*to_view : nullptr};
