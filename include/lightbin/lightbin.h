@@ -83,7 +83,7 @@ typedef enum lightbin_error {
     LIGHTBIN_OUT_OF_MEMORY = 1,
     LIGHTBIN_NULL_ARGUMENT = 2,    /* a pointer that the call needs is null */
     LIGHTBIN_WRONG_SIZE = 3,       /* a struct's `size` is not that of a version that the library knows */
-    LIGHTBIN_LEFT_OUT = 5,         /* the program was compiled without this part, see docs/c.md */
+    LIGHTBIN_LEFT_OUT = 5,         /* compiled without this option or kind of lights, see docs/c.md */
     LIGHTBIN_NOT_A_VALUE = 6,      /* a number that is no value of its enum, or outside of its range */
     LIGHTBIN_STRIDE_TOO_SMALL = 7, /* a stride is less than the element that it steps over */
     LIGHTBIN_NO_SLICES_GIVEN = 8,  /* the binner's options read slices */

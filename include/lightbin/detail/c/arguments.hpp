@@ -110,7 +110,7 @@ inline const char* sentence_of(std::int32_t error) {
         return "`size` must be sizeof of the struct, {available}, and is {needed}; of a newer lightbin's "
                "struct all that this one does not know must be 0";
     case LIGHTBIN_LEFT_OUT:
-        return "lightbin was compiled without this part: the define of this name leaves it out";
+        return "lightbin was compiled without this: the define of this name leaves it out";
     case LIGHTBIN_NOT_A_VALUE:
         return "{given} is none of the values that there are for it";
     case LIGHTBIN_STRIDE_TOO_SMALL:

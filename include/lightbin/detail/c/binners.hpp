@@ -191,6 +191,7 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
     });
 }
 
+#if !defined(LIGHTBIN_NO_TRANSPARENCY)
 lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* opaque, lightbin_grid* transparent) {
@@ -198,10 +199,7 @@ lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbi
     const lightbin_result result =
         first_error(check_size(opaque, "opaque"), check_size(transparent, "transparent"));
     if (result.error != LIGHTBIN_OK) return result;
-    return with_call(binner, view, lights, inputs, [&]([[maybe_unused]] const Call& call) {
-#if defined(LIGHTBIN_NO_TRANSPARENCY)
-        return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_TRANSPARENCY");
-#else
+    return with_call(binner, view, lights, inputs, [&](const Call& call) {
         if (!reads_bounds(binner->value.options())) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
         return with_id(binner->value.options(), [&](auto id) {
             const auto made = binner->value.template bin_transparency<decltype(id)>(call);
@@ -210,35 +208,33 @@ lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbi
             write_grid(made->transparent, transparent);
             return succeeded();
         });
-#endif
     });
 }
+#endif
 
+#if !defined(LIGHTBIN_NO_BITS)
 lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
                                   const lightbin_lights* lights, const lightbin_inputs* inputs,
-                                  [[maybe_unused]] std::uint32_t max_lights, std::uint32_t* words,
+                                  std::uint32_t max_lights, std::uint32_t* words,
                                   std::uint64_t word_count, lightbin_bits* bits) {
     using namespace lightbin::c;
     const lightbin_result result = check_size(bits, "bits");
     if (result.error != LIGHTBIN_OK) return result;
     if (words == nullptr && word_count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "words");
     return with_call(binner, view, lights, inputs, [&](const Call& call) {
-        if constexpr (!has_bits) {
-            return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BITS");
-        } else {
-            if (binner->value.options().slicing == lightbin::Slicing::clusters)
-                return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
-            const auto made =
-                binner->value.bin_bits(call, max_lights, {words, static_cast<std::size_t>(word_count)});
-            if (!made) return refused(made.error());
-            const lightbin_grid grid = grid_of(made->ranks, made->counts);
-            write(lightbin_bits{0, grid.lights, grid.rejected, grid.culled, grid.order, grid.bins,
-                                grid.order_count, grid.bin_count},
-                  bits);
-            return succeeded();
-        }
+        if (binner->value.options().slicing == lightbin::Slicing::clusters)
+            return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
+        const auto made =
+            binner->value.bin_bits(call, max_lights, {words, static_cast<std::size_t>(word_count)});
+        if (!made) return refused(made.error());
+        const lightbin_grid grid = grid_of(made->ranks, made->counts);
+        write(lightbin_bits{0, grid.lights, grid.rejected, grid.culled, grid.order, grid.bins, grid.order_count,
+                            grid.bin_count},
+              bits);
+        return succeeded();
     });
 }
+#endif
 
 lightbin_result lightbin_binner_coverage(const lightbin_binner* binner, const lightbin_coverage** lights,
                                          std::size_t* count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The functions of lightbin.h, for the file that defines LIGHTBIN_IMPLEMENTATION. Defines leave out what the program
-// never asks for; docs/c.md says what each saves:
+// never asks for; docs/c.md says what each saves. Functions that are left out are not there; options, kinds of lights
+// and threads that are left out are refused by the define's name.
 //
 //   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights; the functions that make boxes
 //   LIGHTBIN_NO_U16, LIGHTBIN_NO_SILHOUETTES                        ids and footprints
@@ -36,7 +37,6 @@
 #if !defined(LIGHTBIN_NO_CULL_SHADERS)
 #include <lightbin/detail/c/cull_shaders.hpp>
 #endif
-#include <lightbin/detail/c/left_out.hpp>
 
 extern "C" {
 
