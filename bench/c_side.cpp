@@ -38,7 +38,7 @@ void release(void* placed) {
 
 }  // namespace
 
-// What the Buffers of the C++ side call.
+// What the Buffers of both sides call.
 void* operator new[](std::size_t bytes) {
     void* const memory = place(bytes);
     if (memory == nullptr) throw std::bad_alloc();
@@ -129,13 +129,11 @@ template <Options options> void measure(const char* name, std::size_t count, Kin
     binner_options.footprint = static_cast<std::int32_t>(options.footprint);
     binner_options.depth_test = static_cast<std::int32_t>(options.depth_test);
     binner_options.slicing = static_cast<std::int32_t>(options.slicing);
-    const lightbin_allocator placed = {[](void*, std::size_t bytes) { return place(bytes); },
-                                       [](void*, void* memory) { release(memory); }, nullptr};
     lightbin_view* view = nullptr;
     lightbin_binner* binner = nullptr;
     lightbin_slices* slices = nullptr;
-    if (lightbin_view_create(&view_options, nullptr, &view).error ||
-        lightbin_slices_exponential(24, 5, 200, 0, nullptr, &slices).error)
+    if (lightbin_view_create(&view_options, &view).error ||
+        lightbin_slices_exponential(24, 5, 200, 0, &slices).error)
         std::abort();
     lightbin_z_bounds bounds = {};
     bounds.size = sizeof bounds, bounds.min = min.data(), bounds.max = max.data(), bounds.tiles = min.size();
@@ -200,7 +198,7 @@ template <Options options> void measure(const char* name, std::size_t count, Kin
     constexpr int placements = 16;
     for (int placement = 0; placement < placements; ++placement) {
         cpp_binner.emplace();
-        if (lightbin_binner_create(&binner_options, &placed, &binner).error) std::abort();
+        if (lightbin_binner_create(&binner_options, &binner).error) std::abort();
         for (const Frame& frame : frames)  // so that neither side allocates in the turns
             if (in_cpp(frame) != in_c(frame)) std::abort();
         const Turns turns = take_turns<Frame>(frames, seconds / placements, {in_cpp, in_c}).in_pairs();

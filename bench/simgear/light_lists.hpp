@@ -26,7 +26,7 @@ public:
         options.slicing = LIGHTBIN_CLUSTERS;
         options.depth_test = LIGHTBIN_BOX;
         lightbin_binner* binner = nullptr;
-        succeed(lightbin_binner_create(&options, nullptr, &binner));
+        succeed(lightbin_binner_create(&options, &binner));
         binner_.reset(binner);
     }
 
@@ -44,7 +44,7 @@ public:
             camera.getProjectionMatrix().ptr();  // as it is: row vectors, translation last
         lightbin_view* view = view_.release();
         const lightbin_result made =
-            view ? lightbin_view_update(view, &options) : lightbin_view_create(&options, nullptr, &view);
+            view ? lightbin_view_update(view, &options) : lightbin_view_create(&options, &view);
         view_.reset(view);
         succeed(made);
 
@@ -52,7 +52,7 @@ public:
         lightbin_slices* depths = nullptr;
         succeed(lightbin_slices_exponential(slices,
                                             near * std::pow(far / near, 1.0f / static_cast<float>(slices)),
-                                            far, margin, nullptr, &depths));
+                                            far, margin, &depths));
         slices_.reset(depths);
 
         ranges_.clear();

@@ -140,8 +140,8 @@ int main(int count, char** words) {
     if (!window) fail("no OpenGL 3.3");
     glfwMakeContextCurrent(window);
 
-    succeed(lightbin_binner_create(NULL, NULL, &binner));
-    succeed(lightbin_shader_snippet(&snippet, NULL, &shader));
+    succeed(lightbin_binner_create(NULL, &binner));
+    succeed(lightbin_shader_snippet(&snippet, &shader));
     const char* const fragment_texts[] = {"#version 330 core\n", lightbin_shader_text(shader), fragment_text};
     const GLuint program = glCreateProgram();
     add_shader(program, GL_VERTEX_SHADER, 1, &vertex_text);
@@ -182,7 +182,7 @@ int main(int count, char** words) {
 
         const lightbin_view_options options = {
             .size = sizeof options, .width = width, .height = height, .projection = {.floats = projection}};
-        succeed(view == NULL ? lightbin_view_create(&options, NULL, &view) : lightbin_view_update(view, &options));
+        succeed(view == NULL ? lightbin_view_create(&options, &view) : lightbin_view_update(view, &options));
         const lightbin_lights given = {.size = sizeof given,
                                        .view_matrix = {.floats = camera},
                                        .spheres = {.count = light_count,

@@ -6,8 +6,8 @@
  *     #define LIGHTBIN_IMPLEMENTATION
  *     #include <lightbin/lightbin.h>
  *
- * and everywhere else the include alone. That one file must include no C++ header of lightbin before this one. All
- * headers lie in one folder, so one include path serves C and C++; docs/c.md has a whole program.
+ * and everywhere else the include alone. All headers lie in one folder, so one include path serves C and C++;
+ * docs/c.md has a whole program.
  *
  * What it does: a renderer gives it a camera and its lights each frame. The screen is divided into tiles, squares of
  * pixels. The library returns for each tile the list of the lights that can reach what is seen there, in two arrays
@@ -44,9 +44,10 @@
  *             by several calls at once.
  *   Pointers  Null where something is needed, and sizes too small, are refused; lightbin_result.name says which. Memory
  *             to be written must not overlap other memory of the call. Pointers are not kept after the call.
- *   Memory    Handles keep their memory for the next call, so that calls allocate nothing once warm. If memory runs
- *             out, the error is LIGHTBIN_OUT_OF_MEMORY. (Where the implementing file is compiled without exceptions, as
- *             by -fno-exceptions, the program is ended by abort() instead.)
+ *   Memory    All memory is of C++'s operator new, which a program may replace: docs/c.md says how. Handles keep theirs
+ *             for the next call, so that calls allocate nothing once warm. If memory runs out, the error is
+ *             LIGHTBIN_OUT_OF_MEMORY. (Where the implementing file is compiled without exceptions, as by
+ *             -fno-exceptions, the program is ended by abort() instead.)
  */
 #ifndef LIGHTBIN_LIGHTBIN_H
 #define LIGHTBIN_LIGHTBIN_H
@@ -191,20 +192,7 @@ typedef enum lightbin_isa {
 /* Returns the widest instruction set that the library is compiled for and this machine runs. */
 LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
 
-/* ---- Memory and threads of the caller ---- */
-
-/* The caller's memory for a handle and all that it keeps. Null pointers for both functions mean malloc() and free(),
- * and one that is null beside one that is not is refused. The functions may be called on any thread that runs tasks of
- * lightbin_threads, several at a time.
- *
- * While a shader text or the content of a shader's buffers is made, parts of it are in memory of the C++ library's
- * operator new. All of that memory is freed before the call returns. */
-typedef struct lightbin_allocator {
-    void* (*allocate)(void* user,
-                      size_t bytes); /* memory aligned as that of malloc(), or null if there is none */
-    void (*release)(void* user, void* memory); /* is not called with a null pointer */
-    void* user;
-} lightbin_allocator;
+/* ---- Threads of the caller ---- */
 
 /* The library's function that does one of several tasks. The caller's threads call it. */
 typedef void (*lightbin_task)(void* context, size_t index);
@@ -273,12 +261,10 @@ typedef struct lightbin_view lightbin_view;
 
 /* Makes a view. On success *view is the view, to be freed with lightbin_view_destroy().
  *
- * allocator  null: malloc() and free(). It is copied.
- *
  * Errors: LIGHTBIN_MATRIX_NOT_FINITE to LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, which say what is wrong with the matrix, the
  * viewport or the tile size. */
 LIGHTBIN_API lightbin_result lightbin_view_create(const lightbin_view_options* options,
-                                                  const lightbin_allocator* allocator, lightbin_view** view);
+                                                  lightbin_view** view);
 
 /* Gives a view another projection, viewport or tile size, as when the camera or the window changes. Allocates nothing.
  * Errors: those of lightbin_view_create(); the view is then as before. */
@@ -413,20 +399,16 @@ typedef struct lightbin_slices lightbin_slices;
  *
  * margin     from 0 to 1/2. A shader that finds the slice of a depth d by a formula of its own, which may be wrong by
  *            up to margin * |d|, finds all lights in the slice that it reads. 0 for shaders with the library's own text
- * allocator  null: malloc() and free(). It is copied.
  *
  * Errors: LIGHTBIN_NO_SLICES, a count below 1; LIGHTBIN_SLICE_RANGE_EMPTY, not 0 < first < last, or not begin < end,
  * with two slices or more; LIGHTBIN_SLICES_DO_NOT_ASCEND, boundaries that do not ascend, are not finite, or are equal
  * once they are rounded to float. */
 LIGHTBIN_API lightbin_result lightbin_slices_exponential(int32_t count, float first, float last, float margin,
-                                                         const lightbin_allocator* allocator,
                                                          lightbin_slices** slices);
 LIGHTBIN_API lightbin_result lightbin_slices_linear(int32_t count, float begin, float end, float margin,
-                                                    const lightbin_allocator* allocator,
                                                     lightbin_slices** slices);
 LIGHTBIN_API lightbin_result lightbin_slices_from_boundaries(const float* boundaries, size_t count,
                                                              float margin,
-                                                             const lightbin_allocator* allocator,
                                                              lightbin_slices** slices);
 LIGHTBIN_API void lightbin_slices_destroy(lightbin_slices* slices);
 
@@ -539,11 +521,9 @@ typedef struct lightbin_binner lightbin_binner;
 /* Makes a binner. On success *binner is the binner, to be freed with lightbin_binner_destroy().
  *
  * options    null: the defaults, all 0
- * allocator  null: malloc() and free(). It is copied.
  *
  * Errors: LIGHTBIN_OPTIONS_NOT_TOGETHER; LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
-                                                    const lightbin_allocator* allocator,
                                                     lightbin_binner** binner);
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
 
@@ -683,8 +663,7 @@ LIGHTBIN_API lightbin_result lightbin_append_grid(lightbin_grid* grid, const lig
 typedef struct lightbin_grid_union lightbin_grid_union;
 
 /* Makes a lightbin_grid_union, to be freed with lightbin_grid_union_destroy(). */
-LIGHTBIN_API lightbin_result lightbin_grid_union_create(const lightbin_allocator* allocator,
-                                                        lightbin_grid_union** grid_union);
+LIGHTBIN_API lightbin_result lightbin_grid_union_create(lightbin_grid_union** grid_union);
 LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
 
 /* Makes a grid each of whose cells lists the lights that the same cell of either grid lists, each once, in ascending
@@ -702,8 +681,7 @@ LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_unio
 typedef struct lightbin_budget lightbin_budget;
 
 /* Makes a lightbin_budget, to be freed with lightbin_budget_destroy(). */
-LIGHTBIN_API lightbin_result lightbin_budget_create(const lightbin_allocator* allocator,
-                                                    lightbin_budget** budget);
+LIGHTBIN_API lightbin_result lightbin_budget_create(lightbin_budget** budget);
 LIGHTBIN_API void lightbin_budget_destroy(lightbin_budget* budget);
 
 /* What lightbin_limit_grid() left out. An entry is one light in one cell's list. */
@@ -854,7 +832,6 @@ typedef struct lightbin_shader lightbin_shader;
  * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
-                                                     const lightbin_allocator* allocator,
                                                      lightbin_shader** shader);
 LIGHTBIN_API void lightbin_shader_destroy(lightbin_shader* shader);
 
@@ -947,7 +924,6 @@ typedef struct lightbin_reduce_options {
  * LIGHTBIN_SAMPLES_OUT_OF_RANGE, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS,
  * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
-                                                    const lightbin_allocator* allocator,
                                                     lightbin_shader** shader);
 
 /* The constants `grid`, `planes` and `corner` of lightbin_reduce_shader(), with the layout of its uniform block. */
@@ -1019,7 +995,6 @@ typedef struct lightbin_cull_options {
  * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER,
  * LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
-                                                  const lightbin_allocator* allocator,
                                                   lightbin_shader** shader);
 
 /* The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535. */

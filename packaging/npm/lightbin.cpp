@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The WebAssembly module of the npm package: the C side without what build.sh leaves out, and the module's memory.
-#include <lightbin/detail/c/memory.hpp>
-
+#define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/binner.hpp>
 #include <lightbin/box.hpp>
 #include <lightbin/spot.hpp>
 
 // What no light and no tile goes through is compiled for size alone.
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)
-#include <lightbin/detail/c/implementation.hpp>
+#include <lightbin/lightbin.h>
 #pragma clang attribute pop
 
 #include "layouts.inl"

@@ -408,7 +408,7 @@ class View extends Held {
     constructor(core, options) {
         super(core, 'view');
         this.#core = core;
-        this.#set(options, (c, at) => { this[address] = core.create(c.lightbin_view_create, at, 0); });
+        this.#set(options, (c, at) => { this[address] = core.create(c.lightbin_view_create, at); });
     }
     /// The same view in another module.
     static copy(core, view) {
@@ -533,7 +533,7 @@ function slices_of(core, boundaries, margin = 0) {
         core.stage(boundaries, 'boundaries', at, 0, boundaries.length);
         core.flush();
         const from = core.heap().getUint32(at, true);
-        return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin, 0);
+        return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin);
     });
 }
 
@@ -655,8 +655,8 @@ class Binner extends Held {
         this.#words = new Block(core);
         this.#grid = new Lists(core, this.#encoded);
         this.#bits = new Lists(core, this.#encoded);
-        this[address] = core.scope(c => core.create(c.lightbin_binner_create, core.place('binnerOptions', options,
-            'options'), 0));
+        this[address] = core.scope(c => core.create(c.lightbin_binner_create,
+            core.place('binnerOptions', options, 'options')));
     }
     bin(view, lights, inputs) {
         const core = this.#core;
@@ -730,7 +730,7 @@ function shader_options(core, generator, options) {
 }
 
 function shader_text(core, generator, options) {
-    const c = core.c, shader = core.create(generator.make(c), shader_options(core, generator, options), 0);
+    const c = core.c, shader = core.create(generator.make(c), shader_options(core, generator, options));
     try {
         const bindings = [];
         for (let i = 0; i < c.lightbin_shader_binding_count(shader); ++i) {
@@ -793,13 +793,13 @@ class Lightbin {
         const {count, first, last, margin = 0} = only(options, ['count', 'first', 'last', 'margin'], 'options');
         const core = this.#core;
         return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'),
-            ...reals({first, last}), margin, 0));
+            ...reals({first, last}), margin));
     }
     linearSlices(options) {
         const {count, begin, end, margin = 0} = only(options, ['count', 'begin', 'end', 'margin'], 'options');
         const core = this.#core;
         return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'),
-            ...reals({begin, end}), margin, 0));
+            ...reals({begin, end}), margin));
     }
     slicesFromBoundaries(options) {
         const {boundaries, margin = 0} = only(options, ['boundaries', 'margin'], 'options');

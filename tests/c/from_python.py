@@ -71,8 +71,8 @@ projection = array.array("d", [1, 0, 0, 0, 0, 2, 0, 0, 0, 0, -(far + near) / (fa
 view, binner = c.c_void_p(), c.c_void_p()
 options = ViewOptions(size=c.sizeof(ViewOptions), width=width, height=height, tile_size=tile,
                       projection=Matrix(doubles=projection.buffer_info()[0]))
-check(library.lightbin_view_create(c.byref(options), None, c.byref(view)))
-check(library.lightbin_binner_create(None, None, c.byref(binner)))
+check(library.lightbin_view_create(c.byref(options), c.byref(view)))
+check(library.lightbin_binner_create(None, c.byref(binner)))
 
 # Small lights straight ahead of pixels: each must be listed in the tile of its pixel, and of all others in no more than
 # the eight around that.

@@ -88,7 +88,7 @@ int main(void) {
     lightbin_view_options view_options = {
         .size = sizeof view_options, .width = 640, .height = 480, .projection = {.floats = projection}};
     lightbin_view* view = NULL;
-    succeed(lightbin_view_create(&view_options, NULL, &view));
+    succeed(lightbin_view_create(&view_options, &view));
     {
         $(blocks gpu)
     }
@@ -116,8 +116,8 @@ int main(void) {
     CameraLists lists = {0};
     uint64_t made[3];
     for (int draw = 0; draw < 3; ++draw) {
-        if (draw == 0 && (lightbin_view_create(&options, NULL, &lists.view).error != LIGHTBIN_OK ||
-                          lightbin_binner_create(NULL, NULL, &lists.binner).error != LIGHTBIN_OK)) return 1;
+        if (draw == 0 && (lightbin_view_create(&options, &lists.view).error != LIGHTBIN_OK ||
+                          lightbin_binner_create(NULL, &lists.binner).error != LIGHTBIN_OK)) return 1;
         if (use_lists(&lists, &camera, draw < 2 ? 1 : 2, lights).error != LIGHTBIN_OK) return 2;
         made[draw] = lists.grid.id_count;
         lights.spheres.count = 0; /* from the second draw on, which is in the same frame */

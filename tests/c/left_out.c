@@ -31,7 +31,7 @@ static lightbin_result create(int ids, int footprint, int depth_test, int slicin
     options.depth_test = depth_test;
     options.slicing = slicing;
     options.coverage = coverage;
-    return lightbin_binner_create(&options, NULL, &binner);
+    return lightbin_binner_create(&options, &binner);
 }
 
 static void never(void* user, size_t count, lightbin_task task, void* context) {
@@ -60,8 +60,8 @@ int main(void) {
     given.spheres.centre.first = lights;
     given.spheres.radius.first = lights + 3;
     grid.size = sizeof grid;
-    works(lightbin_view_create(&view_options, NULL, &view));
-    works(lightbin_binner_create(NULL, NULL, &binner));
+    works(lightbin_view_create(&view_options, &view));
+    works(lightbin_binner_create(NULL, &binner));
     works(lightbin_bin(binner, view, &given, NULL, &grid));
     if (grid.range_count != 16 || grid.id_count == 0) return EXIT_FAILURE;
 

@@ -203,7 +203,7 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
         weights.push_back(static_cast<float>(random.integer(0, 9)));
     Budget<Id> cpp_budget;
     lightbin_budget* budget = nullptr;
-    REQUIRE(lightbin_budget_create(nullptr, &budget).error == LIGHTBIN_OK);
+    REQUIRE(lightbin_budget_create(&budget).error == LIGHTBIN_OK);
     const Owned<lightbin_budget> budget_owner(budget);
     const std::uint32_t per_cell = static_cast<std::uint32_t>(random.integer(1, 20)),
                         per_frame = static_cast<std::uint32_t>(random.integer(1, 3000));
@@ -219,7 +219,7 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
 
     GridUnion<Id> cpp_union;
     lightbin_grid_union* grid_union = nullptr;
-    REQUIRE(lightbin_grid_union_create(nullptr, &grid_union).error == LIGHTBIN_OK);
+    REQUIRE(lightbin_grid_union_create(&grid_union).error == LIGHTBIN_OK);
     const Owned<lightbin_grid_union> union_owner(grid_union);
     auto united = sized<lightbin_grid>();
     const auto cpp_united = cpp_union.unite(cpp_limited.grid, expected);
@@ -272,7 +272,7 @@ Owned<lightbin_view> view_of(const Scene& scene) {
     options.width = scene.width, options.height = scene.height, options.tile_size = scene.tile_size;
     options.projection.floats = scene.projection;
     lightbin_view* view = nullptr;
-    REQUIRE(lightbin_view_create(&options, nullptr, &view).error == LIGHTBIN_OK);
+    REQUIRE(lightbin_view_create(&options, &view).error == LIGHTBIN_OK);
     return Owned<lightbin_view>(view);
 }
 
@@ -314,7 +314,7 @@ lightbin_lights lights_of(const Scene& scene, std::size_t first_spot, bool in_wo
 /// Returns a binner with options; null: the defaults.
 Owned<lightbin_binner> binner_of(const lightbin_binner_options* options) {
     lightbin_binner* made = nullptr;
-    const lightbin_result created = lightbin_binner_create(options, nullptr, &made);
+    const lightbin_result created = lightbin_binner_create(options, &made);
     REQUIRE_MESSAGE(created.error == LIGHTBIN_OK, text(created));
     return Owned<lightbin_binner>(made);
 }
@@ -341,8 +341,7 @@ template <Options options> void compare_sides() {
         const View cpp_view = cpp_view_of(scene);
         lightbin_slices* slices_made = nullptr;
         const float margin = round % 3 == 0 ? 0.01f : 0.0f;
-        REQUIRE(lightbin_slices_from_boundaries(scene.boundaries.data(), scene.boundaries.size(), margin,
-                                                nullptr, &slices_made)
+        REQUIRE(lightbin_slices_from_boundaries(scene.boundaries.data(), scene.boundaries.size(), margin, &slices_made)
                     .error == LIGHTBIN_OK);
         const Owned<lightbin_slices> slices(slices_made);
         const Slices cpp_slices = Slices::from_boundaries(scene.boundaries)->with_margin(margin);
@@ -603,7 +602,7 @@ TEST_CASE("C: instruction sets are those of C++, and one that is not there is re
     auto options = sized<lightbin_binner_options>();
     lightbin_binner* binner = nullptr;
     for (options.isa = -1; options.isa <= LIGHTBIN_AVX512 + 1; ++options.isa) {
-        const lightbin_result made = lightbin_binner_create(&options, nullptr, &binner);
+        const lightbin_result made = lightbin_binner_create(&options, &binner);
         const bool is_value = 0 <= options.isa && options.isa <= LIGHTBIN_AVX512;
         CHECK(made.error == (!is_value                                 ? LIGHTBIN_NOT_A_VALUE
                              : options.isa > lightbin_machine_isa() ? LIGHTBIN_NO_SUCH_ISA
@@ -670,7 +669,7 @@ TEST_CASE("C: shader texts and their data are those of C++") {
                     cpp_options.slices = {3}, cpp_options.bins = {2}, cpp_options.view = {1};
                 }
                 lightbin_shader* made = nullptr;
-                const lightbin_result result = lightbin_shader_snippet(&options, nullptr, &made);
+                const lightbin_result result = lightbin_shader_snippet(&options, &made);
                 const Owned<lightbin_shader> shader(made);
                 const auto expected = shader_snippet(cpp_options);
                 compare_shaders(expected, result, made);
@@ -694,11 +693,11 @@ TEST_CASE("C: shader texts and their data are those of C++") {
     auto reduce_options = sized<lightbin_reduce_options>();
     reduce_options.language = LIGHTBIN_GLSL_430;
     lightbin_shader* made = nullptr;
-    REQUIRE(lightbin_reduce_shader(&reduce_options, nullptr, &made).error == LIGHTBIN_OK);
+    REQUIRE(lightbin_reduce_shader(&reduce_options, &made).error == LIGHTBIN_OK);
     CHECK(lightbin_shader_text(made) == reduce_shader()->text);
     lightbin_shader_destroy(made);
     lightbin_slices* slices = nullptr;
-    REQUIRE(lightbin_slices_exponential(24, 5, 200, 0, nullptr, &slices).error == LIGHTBIN_OK);
+    REQUIRE(lightbin_slices_exponential(24, 5, 200, 0, &slices).error == LIGHTBIN_OK);
     const Owned<lightbin_slices> owned(slices);
     const Slices cpp_slices = *Slices::exponential(24, 5, 200);
     CHECK(lightbin_slices_count(slices) == 24);
@@ -777,7 +776,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
         for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
             lightbin_shader* made = nullptr;
             options.c.pass = pass;
-            const lightbin_result result = lightbin_cull_shader(&options.c, nullptr, &made);
+            const lightbin_result result = lightbin_cull_shader(&options.c, &made);
             const Owned<lightbin_shader> shader(made);
             const auto expected = cull_shader(static_cast<CullPass>(pass), options.cpp);
             compare_shaders(expected, result, made);
@@ -789,7 +788,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
         lightbin_slices* slices_made = nullptr;
         const int slice_count = random.integer(1, 1100);
         const float margin = round % 3 == 0 ? 0.01f : 0;
-        REQUIRE(lightbin_slices_linear(slice_count, 1, 900, margin, nullptr, &slices_made).error ==
+        REQUIRE(lightbin_slices_linear(slice_count, 1, 900, margin, &slices_made).error ==
                 LIGHTBIN_OK);
         const Owned<lightbin_slices> slices(slices_made);
         const Slices cpp_slices = Slices::linear(slice_count, 1, 900)->with_margin(margin);

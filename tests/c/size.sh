@@ -37,7 +37,7 @@ if [ "${1-}" = --check ]; then
         -c "$here/../../packaging/lightbin.cpp" -o "$work/no_exceptions.o"
     cc -std=c99 -I "$here/../../include" -c "$here/contract.c" -o "$work/contract.o"
     g++ "$work/contract.o" "$work/no_exceptions.o" -o "$work/contract"
-    "$work/contract" --no-exceptions
+    "$work/contract"
     exit
 fi
 

@@ -23,21 +23,10 @@ void require(bool condition, const char* what) {
     std::abort();
 }
 
-struct Heap {
-    long blocks = 0, left = 0;  ///< allocated and not released; how many allocations succeed from now on
-};
-
-void* allocate(void* user, std::size_t bytes) {
-    Heap& heap = *static_cast<Heap*>(user);
-    if (heap.left-- <= 0 || bytes > 4'000'000) return nullptr;
-    ++heap.blocks;
-    return std::malloc(bytes);
-}
-
-void release(void* user, void* memory) {
-    --static_cast<Heap*>(user)->blocks;
-    std::free(memory);
-}
+/// Whether memory is limited, as it is in calls of the library; how many of their allocations succeed from now on; and
+/// how many blocks of all memory are not freed.
+bool memory_is_limited = false;
+long left = 0, blocks = 0;
 
 void run_tasks(void*, std::size_t count, lightbin_task task, void* context) {
     while (count > 0)
@@ -45,13 +34,17 @@ void run_tasks(void*, std::size_t count, lightbin_task task, void* context) {
 }
 
 /// Whether a call succeeded. If not, its sentence is sound.
-bool succeeded(const lightbin_result& result) {
+bool judged(const lightbin_result& result) {
+    memory_is_limited = false;
     char text[600] = "";
     const std::size_t length = lightbin_error_text(result, text, sizeof text);
     require(length > 5 && length < 512 && std::strlen(text) == length, "no sentence");
     require(result.name != nullptr && result.error != LIGHTBIN_CALLBACK_THREW, "no name, or an exception");
     return result.error == LIGHTBIN_OK;
 }
+
+/// Whether a call succeeded, in which memory may run out.
+#define succeeded(...) (memory_is_limited = true, judged(__VA_ARGS__))
 
 /// Mostly a small number that makes sense, sometimes any.
 std::int32_t take_number(Bytes& bytes, unsigned below) {
@@ -196,12 +189,12 @@ bool deserve(std::int32_t error, const lightbin_cull_options& options) {
 
 /// Whether a call with options succeeded. If not, the options have what the error blames, or it is one of `others`;
 /// if so, they have nothing that is refused.
-bool succeeded(const lightbin_result& result, const Sized<lightbin_cull_options>& options,
+bool judged(const lightbin_result& result, const Sized<lightbin_cull_options>& options,
                std::initializer_list<std::int32_t> others) {
     static constexpr std::int32_t of_options[] = {
         LIGHTBIN_NOT_A_VALUE,    LIGHTBIN_NO_STORAGE_BUFFERS,  LIGHTBIN_NO_CULL_OF_BOXES,
         LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER};
-    const bool fine = succeeded(result);
+    const bool fine = judged(result);
     if (!options.whole()) return fine;  // what is cut off counts as 0
     if (!fine)
         require(deserve(result.error, *options.get()) ||
@@ -264,8 +257,8 @@ void check_plan(const lightbin_cull_plan& plan, const lightbin_cull_options& opt
 }
 
 /// Asks for a text and a plan that make lists on the GPU.
-void plan_lists_on_gpu(Bytes& bytes, const lightbin_allocator& allocator, const lightbin_view* view,
-                       const lightbin_slices* slices, std::uint64_t tiles) {
+void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_slices* slices,
+                       std::uint64_t tiles) {
     std::string prefix;
     for (unsigned length = bytes.byte() % 8; prefix.size() < length;)
         prefix += static_cast<char>(bytes.byte() % 255 + 1);
@@ -274,7 +267,7 @@ void plan_lists_on_gpu(Bytes& bytes, const lightbin_allocator& allocator, const 
                                                bytes);
     const lightbin_cull_options* const given = bytes.byte() > 250 ? nullptr : options.get();
     lightbin_shader* shader = nullptr;
-    if (succeeded(lightbin_cull_shader(given, &allocator, &shader), options,
+    if (succeeded(lightbin_cull_shader(given, &shader), options,
                   {LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_OUT_OF_MEMORY, LIGHTBIN_SLOT_OUT_OF_RANGE,
                    LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NOT_A_PREFIX}))
         check_shader(shader, named && options.whole() ? prefix : "");
@@ -311,14 +304,9 @@ void plan_lists_on_gpu(Bytes& bytes, const lightbin_allocator& allocator, const 
     }
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    Bytes bytes(data, size);
-    Heap heap;
+void use_calls(Bytes bytes) {
     const unsigned kind = bytes.byte();
-    heap.left = (kind & 1) != 0 ? 1'000'000 : static_cast<long>(bytes.byte());
-    const lightbin_allocator allocator = {allocate, release, &heap};
+    left = (kind & 1) != 0 ? 1'000'000 : static_cast<long>(bytes.byte());
     lightbin_view* view = nullptr;
     lightbin_slices* slices = nullptr;
     lightbin_binner* binner = nullptr;
@@ -335,16 +323,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // Pixels-sized tiles of a large viewport would take the fuzzer's time.
     if (view_options.tile_size < 4 && view_options.tile_size != 0) view_options.tile_size += 4;
     if (view_options.width > 400 || view_options.height > 400) view_options.tile_size = 512;
-    succeeded(lightbin_view_create(&view_options, &allocator, &view));
+    succeeded(lightbin_view_create(&view_options, &view));
     succeeded(lightbin_slices_exponential(take_number(bytes, 20), static_cast<float>(bytes.byte()) / 10,
                                           static_cast<float>(bytes.byte()),
-                                          static_cast<float>(bytes.byte()) / 500, &allocator, &slices));
+                                          static_cast<float>(bytes.byte()) / 500, &slices));
     lightbin_binner_options options = {};
     options.size = sizeof options;
     options.ids = take_number(bytes, 3), options.footprint = take_number(bytes, 2);
     options.depth_test = take_number(bytes, 4), options.slicing = take_number(bytes, 3);
     options.coverage = bytes.flag();
-    succeeded(lightbin_binner_create(&options, &allocator, &binner));
+    succeeded(lightbin_binner_create(&options, &binner));
 
     std::size_t tiles = 0;
     lightbin_view_info info = {};
@@ -354,7 +342,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // Some inputs begin with the shaders that make lists on the GPU.
     if (kind >= 192)
         for (int call = 0; call < 3 && !bytes.empty(); ++call)
-            plan_lists_on_gpu(bytes, allocator, view, slices, tiles);
+            plan_lists_on_gpu(bytes, view, slices, tiles);
     std::vector<float> bounds_memory(2 * tiles);
     for (std::size_t i = 0; i < tiles; ++i) {
         bounds_memory[i] = static_cast<float>(bytes.byte()) / 16;
@@ -366,8 +354,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bounds.tiles = tiles;
     lightbin_budget* budget = nullptr;
     lightbin_grid_union* grid_union = nullptr;
-    succeeded(lightbin_budget_create(&allocator, &budget));
-    succeeded(lightbin_grid_union_create(&allocator, &grid_union));
+    succeeded(lightbin_budget_create(&budget));
+    succeeded(lightbin_grid_union_create(&grid_union));
     lightbin_threads threads = {sizeof threads, bytes.byte(), run_tasks, nullptr};
     for (int call = 0; call < 3 && !bytes.empty(); ++call) {
         std::vector<std::unique_ptr<char[]>> memory;
@@ -432,13 +420,45 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (succeeded(
                 lightbin_bin_bits(binner, view, &lights, &inputs, most, words.data(), words.size(), &bits)))
             require(bits.lights == grid.lights || bits.lights <= 46, "lights were lost");
-        heap.left += bytes.byte();
+        left += bytes.byte();
     }
     lightbin_budget_destroy(budget);
     lightbin_grid_union_destroy(grid_union);
     lightbin_binner_destroy(binner);
     lightbin_slices_destroy(slices);
     lightbin_view_destroy(view);
-    require(heap.blocks == 0, "memory leaks");
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+    const bool fails = memory_is_limited && (left-- <= 0 || bytes > 4'000'000);
+    void* const memory = fails ? nullptr : std::malloc(bytes != 0 ? bytes : 1);
+    if (memory == nullptr) throw std::bad_alloc();
+    ++blocks;
+    return memory;
+}
+// The others would call these, but for those that a sanitizer brings.
+void* operator new[](std::size_t bytes) {
+    return operator new(bytes);
+}
+void operator delete(void* memory) noexcept {
+    blocks -= memory != nullptr;
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    operator delete(memory);
+}
+void operator delete[](void* memory) noexcept {
+    operator delete(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+    operator delete(memory);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const long before = blocks;
+    use_calls(Bytes(data, size));
+    require(blocks == before, "memory leaks");
     return 0;
 }

@@ -4,15 +4,22 @@
 #include <new>
 
 std::size_t allocations = 0, allocations_left = 0;
+long blocks = 0;
 
 namespace {
 
 void* counted(void* memory) {
     ++allocations;
     const bool fails = allocations_left != 0 && --allocations_left == 0;
+    blocks += memory != nullptr && !fails;
     if (memory != nullptr && !fails) return memory;
     std::free(memory);
     throw std::bad_alloc();
+}
+
+void uncounted(void* memory) {
+    blocks -= memory != nullptr;
+    std::free(memory);
 }
 
 }  // namespace
@@ -32,26 +39,26 @@ void* operator new[](std::size_t size, std::align_val_t alignment) {
     return operator new(size, alignment);
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete[](void* memory) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete[](void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    uncounted(memory);
 }

@@ -103,8 +103,8 @@ int main(int count, char** names) {
     view_options.height = HEIGHT;
     view_options.tile_size = TILE;
     view_options.projection.doubles = projection;
-    succeed(lightbin_view_create(&view_options, nullptr, &view));
-    succeed(lightbin_slices_exponential(17, 1.5f, 120, 0, nullptr, &slices));
+    succeed(lightbin_view_create(&view_options, &view));
+    succeed(lightbin_slices_exponential(17, 1.5f, 120, 0, &slices));
     write_block(projection, sizeof projection);
     write_block(camera, sizeof camera);
     write_block(spheres, sizeof spheres);
@@ -129,7 +129,7 @@ int main(int count, char** names) {
         options.depth_test = number / 8 % 3;
         options.slicing = number / 24;
         if (options.slicing == LIGHTBIN_CLUSTERS && options.depth_test == LIGHTBIN_INTERVAL) continue;
-        succeed(lightbin_binner_create(&options, nullptr, &binner));
+        succeed(lightbin_binner_create(&options, &binner));
 
         bounds.size = sizeof bounds;
         bounds.min = nearest;
@@ -184,13 +184,13 @@ int main(int count, char** names) {
         options.language = fragment ? LIGHTBIN_ESSL_300 : LIGHTBIN_WGSL;
         options.fragment = fragment;
         options.skip_background = 1;
-        succeed(lightbin_reduce_shader(&options, nullptr, &shader));
+        succeed(lightbin_reduce_shader(&options, &shader));
         write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
         lightbin_shader_destroy(shader);
     }
     // What shaders that make the lists of lights on the GPU need, and their texts.
     lightbin_slices* wide_slices = nullptr;
-    succeed(lightbin_slices_exponential(17, 1.5f, 120, 0.02f, nullptr, &wide_slices));
+    succeed(lightbin_slices_exponential(17, 1.5f, 120, 0.02f, &wide_slices));
     for (const int slicing : {LIGHTBIN_NO_SLICING, LIGHTBIN_CLUSTERS}) {
         lightbin_cull_options options = {};
         lightbin_cull_plan plan = {};
@@ -210,7 +210,7 @@ int main(int count, char** names) {
         for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
             lightbin_shader* shader = nullptr;
             options.pass = pass;
-            succeed(lightbin_cull_shader(&options, nullptr, &shader));
+            succeed(lightbin_cull_shader(&options, &shader));
             write_block(&plan.groups[pass], sizeof plan.groups[0]);
             write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
             lightbin_shader_destroy(shader);

@@ -84,10 +84,10 @@
 #endif
 // clang-format on
 
-#if defined(LIGHTBIN_CALLERS_MEMORY)  // set by the file that implements lightbin.h, whose Buffers allocate otherwise
-#define LIGHTBIN_MEMORY_TAG _in_c
+#if defined(LIGHTBIN_IMPLEMENTATION)  // the file that implements lightbin.h inlines less, and may lack kinds of lights
+#define LIGHTBIN_FILE_TAG _in_c
 #else
-#define LIGHTBIN_MEMORY_TAG
+#define LIGHTBIN_FILE_TAG
 #endif
 #if defined(LIGHTBIN_NO_SIMD)  // chooses other kernels, so needs another name
 #define LIGHTBIN_KERNELS_TAG _no_simd
@@ -97,4 +97,4 @@
 #define LIGHTBIN_KERNELS_TAG
 #endif
 #define LIGHTBIN_ABI_TAG \
-    LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, LIGHTBIN_KERNELS_TAG, LIGHTBIN_MEMORY_TAG, , , , )
+    LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, LIGHTBIN_KERNELS_TAG, LIGHTBIN_FILE_TAG, , , , )

@@ -21,15 +21,7 @@ public:
         swap(other);
         return *this;
     }
-    LIGHTBIN_SMALL ~Buffer() {
-#if defined(LIGHTBIN_CALLERS_MEMORY)  // in the file that implements lightbin.h
-        for (std::size_t i = 0; i < size_; ++i)
-            memory_[i].~T();
-        c::release(memory_);
-#else
-        delete[] memory_;
-#endif
-    }
+    LIGHTBIN_SMALL ~Buffer() { delete[] memory_; }
 
     /// Returns memory for `size` elements or more. If it has to grow, all values are lost. Throws as `new` does if
     /// there is not enough memory or if `size` exceeds std::size_t; the Buffer remains usable.
@@ -56,12 +48,7 @@ private:
     /// Allocates `size` uninitialised elements. A size beyond std::size_t is reduced to its maximum: then `new` throws.
     explicit Buffer(std::uint64_t size)
         : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
-#if defined(LIGHTBIN_CALLERS_MEMORY)
-        static_assert(alignof(T) <= alignof(std::max_align_t));
-        memory_ = static_cast<T*>(c::allocate(size_, sizeof(T)));
-        for (std::size_t i = 0; i < size_; ++i)
-            new (memory_ + i) T;
-#elif defined(LIGHTBIN_MEMORY_SANITIZER)
+#if defined(LIGHTBIN_MEMORY_SANITIZER)
         // Initialised, because kernels read whole words and vectors and ignore parts of them. The sanitizer would
         // report those parts as used.
         memory_ = new T[size_]();

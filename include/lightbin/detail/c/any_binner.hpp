@@ -8,6 +8,7 @@
 #include <lightbin/binner.hpp>
 
 #include <array>
+#include <memory>
 #include <utility>
 
 namespace lightbin {
@@ -122,7 +123,7 @@ struct Projected {
 /// The stages before the lists, for one footprint and slicing.
 class Projection {
 public:
-    virtual void destroy() = 0;
+    virtual ~Projection() = default;
     /// Projects the lights of a call and orders them by depth.
     ///
     /// shared     whether the lists of the last call were built on several threads
@@ -130,9 +131,6 @@ public:
     virtual std::optional<Error> project(Isa isa, const Call& call, bool for_boxes) = 0;
     virtual void find_coverage(const Call& call, detail::CoverageList& coverage) = 0;
     virtual Projected projected() const = 0;
-
-protected:
-    ~Projection() = default;
 };
 
 /// The Projection for a footprint and a slicing.
@@ -144,8 +142,6 @@ class ProjectionOf final : public Projection {
     static constexpr bool sliced = slicing != Slicing::none;
 
 public:
-    LIGHTBIN_SMALL void destroy() override { this->~ProjectionOf(); }
-
     LIGHTBIN_ONCE std::optional<Error> project(Isa isa, const Call& call, bool for_boxes) override {
         footprints_.project(isa, call.view, call.lights.all(), call.threads, for_boxes);
         if constexpr (sliced) {
@@ -190,11 +186,10 @@ private:
     Ordered ordered_;
 };
 
-/// Returns a Projection for options in memory that it allocates, which may fail by an exception.
+/// Returns a Projection for options, of new.
 template <Footprint footprint, bool with_spheres, Slicing slicing>
 LIGHTBIN_SMALL Projection* new_projection() {
-    using Made = ProjectionOf<footprint, with_spheres, slicing>;
-    return new (allocate(1, sizeof(Made))) Made;
+    return new ProjectionOf<footprint, with_spheres, slicing>;
 }
 template <Footprint footprint> Projection* new_projection([[maybe_unused]] const Options& options) {
     if constexpr (has_clusters)
@@ -206,22 +201,6 @@ template <Footprint footprint> Projection* new_projection([[maybe_unused]] const
             return new_projection<footprint, true, Slicing::none>();
     return new_projection<footprint, footprint == Footprint::silhouette, Slicing::none>();
 }
-
-/// Owns a Projection and its memory.
-class ProjectionOwner {
-public:
-    explicit ProjectionOwner(Projection* projection) : projection_(projection) {}
-    ProjectionOwner(const ProjectionOwner&) = delete;
-    ProjectionOwner& operator=(const ProjectionOwner&) = delete;
-    ~ProjectionOwner() {
-        projection_->destroy();
-        release(projection_);
-    }
-    Projection* operator->() const { return projection_; }
-
-private:
-    Projection* projection_;
-};
 
 // ---- Kernels ----
 
@@ -397,7 +376,7 @@ private:
     AnyLists how_;
     Isa isa_ = Isa::scalar;
     detail::Buffer<detail::Scratch> scratch_;
-    ProjectionOwner projection_;
+    std::unique_ptr<Projection> projection_;
     Lists<std::uint32_t> wide_[2];
     Lists<std::uint16_t> narrow_[2];
     detail::CoverageList coverage_;

@@ -2,7 +2,7 @@
 // What the C side's functions do to their arguments and results: structs with a size, enums, null pointers.
 #pragma once
 
-#include <lightbin/detail/c/memory.hpp>
+#include <lightbin/lightbin.h>
 
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
@@ -235,10 +235,8 @@ inline lightbin_result read_matrix(const lightbin_matrix& given, Matrix& matrix,
     return result;
 }
 
-/// Calls body(), which returns a lightbin_result, with the memory of a handle. No exception leaves.
-template <class Body> lightbin_result guarded(const Memory& memory, const Body& body) {
-    if (!memory.complete()) return refused(LIGHTBIN_NULL_ARGUMENT, "allocator");
-    const MemoryOfCall scope(memory);
+/// Calls body(), which returns a lightbin_result. No exception leaves.
+template <class Body> lightbin_result guarded(const Body& body) {
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
     try {
         return body();
@@ -254,33 +252,13 @@ template <class Body> lightbin_result guarded(const Memory& memory, const Body& 
 #endif
 }
 
-/// Makes a handle: a Handle with the members `memory` and `value`, of which value is Value(arguments...).
+/// Makes a handle, whose member `value` is Value(arguments...).
 template <class Handle, class... Arguments>
-lightbin_result make_handle(const Memory& memory, Handle** handle, Arguments&&... arguments) {
-    static_assert(alignof(Handle) <= alignof(std::max_align_t));
-    if (!memory.complete()) return refused(LIGHTBIN_NULL_ARGUMENT, "allocator");
-    void* const place = memory.allocate(sizeof(Handle));
-    if (place == nullptr) return refused(LIGHTBIN_OUT_OF_MEMORY, "");
-#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
-    try {
-        *handle = new (place) Handle{memory, static_cast<Arguments&&>(arguments)...};
-    } catch (...) {
-        memory.release(place);
-        throw;
-    }
-#else
-    *handle = new (place) Handle{memory, static_cast<Arguments&&>(arguments)...};
-#endif
-    return succeeded();
-}
-
-/// Destroys a handle that make_handle() made, or nothing if it is null.
-template <class Handle> void destroy_handle(Handle* handle) {
-    if (handle == nullptr) return;
-    const Memory memory = handle->memory;
-    const MemoryOfCall scope(memory);
-    handle->~Handle();
-    memory.release(handle);
+lightbin_result make_handle(Handle** handle, Arguments&&... arguments) {
+    return guarded([&] {
+        *handle = new Handle{static_cast<Arguments&&>(arguments)...};
+        return succeeded();
+    });
 }
 
 }  // namespace c

@@ -8,7 +8,6 @@
 #include <atomic>
 
 struct lightbin_binner {
-    lightbin::c::Memory memory;
     lightbin::c::AnyBinner value;
 };
 
@@ -57,21 +56,21 @@ template <class Body> lightbin_result with_id([[maybe_unused]] const Options& op
 /// exceptions must not pass through the caller's functions.
 class CallersThreads {
 public:
-    CallersThreads(const lightbin_threads& threads, const Memory& memory)
-        : threads_(threads), memory_(memory) {}
+    explicit CallersThreads(const lightbin_threads& threads) : threads_(threads) {}
 
     template <class Body> void operator()(std::size_t count, Body body) const {
-        Context<Body> context = {body, memory_};
+        Context<Body> context = {body};
         threads_.run(
             threads_.user, count, [](void* at, std::size_t i) { static_cast<Context<Body>*>(at)->run(i); },
             &context);
-        if (context.failed) throw_out_of_memory();
+        #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+        if (context.failed) throw std::bad_alloc();
+#endif
     }
 
 private:
     template <class Body> struct Context {
         void run(std::size_t i) {
-            const MemoryOfCall scope(memory);
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
             try {
                 body(i);
@@ -84,12 +83,10 @@ private:
         }
 
         Body body;
-        const Memory& memory;
         std::atomic<bool> failed = false;
     };
 
     lightbin_threads threads_;
-    const Memory& memory_;
 };
 
 /// Checks the arguments of a binner's call and calls body(call) with them.
@@ -123,11 +120,11 @@ lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
     const Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
 #if defined(LIGHTBIN_NO_THREADS)
     if (threads.run != nullptr) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS");
-    return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, {}}); });
+    return guarded([&] { return body(Call{view->value, lights, slices, bounds, {}}); });
 #else
-    const CallersThreads run(threads, binner->memory);
+    const CallersThreads run(threads);
     const Threads parallel = threads.run != nullptr ? Threads(threads.workers, run) : Threads();
-    return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, parallel}); });
+    return guarded([&] { return body(Call{view->value, lights, slices, bounds, parallel}); });
 #endif
 }
 
@@ -161,18 +158,16 @@ inline lightbin_result read_options(const lightbin_binner_options* given, Option
 extern "C" {
 
 lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
-                                       const lightbin_allocator* allocator, lightbin_binner** binner) {
+                                       lightbin_binner** binner) {
     using namespace lightbin::c;
     if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
     lightbin::Options known;
     const lightbin_result result = read_options(options, known);
-    if (result.error != LIGHTBIN_OK) return result;
-    const Memory memory(allocator);
-    return guarded(memory, [&] { return make_handle(memory, binner, known); });
+    return result.error != LIGHTBIN_OK ? result : make_handle(binner, known);
 }
 
 void lightbin_binner_destroy(lightbin_binner* binner) {
-    lightbin::c::destroy_handle(binner);
+    delete binner;
 }
 
 lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,

@@ -70,14 +70,14 @@ inline void write_plan(const CullPlan& made, lightbin_cull_plan* plan) {
 extern "C" {
 
 lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
-                                     const lightbin_allocator* allocator, lightbin_shader** shader) {
+                                     lightbin_shader** shader) {
     using namespace lightbin::c;
     if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
     lightbin::CullPass pass = {};
     lightbin::CullShaderOptions known;
     const lightbin_result result = read_cull_options(options, pass, known);
     if (result.error != LIGHTBIN_OK) return result;
-    return make_shader(allocator, shader, [&] { return lightbin::cull_shader(pass, known); });
+    return make_shader(shader, [&] { return lightbin::cull_shader(pass, known); });
 }
 
 lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cull_options* options,
@@ -97,7 +97,7 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
         return refused(known.world_space ? LIGHTBIN_NULL_ARGUMENT : LIGHTBIN_NOT_READ, "to_view");
     if (to_view != nullptr) result = read_matrix(*to_view, matrix, "to_view");
     if (result.error != LIGHTBIN_OK) return result;
-    return guarded(view->memory, [&] {
+    return guarded([&] {
         const auto made =
             lightbin::plan_cull(view->value, known, {lights, entries}, sliced ? &slices->value : nullptr,
                                 to_view != nullptr ? &matrix : nullptr);
@@ -112,7 +112,7 @@ lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges*
     using namespace lightbin::c;
     if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
     if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
-    return guarded(view->memory, [&] {
+    return guarded([&] {
         const auto made = lightbin::shader_edges(view->value);
         return write_items(made.data(), made.size(), edges, capacity, count, "edges");
     });
@@ -123,7 +123,7 @@ lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_ed
     using namespace lightbin::c;
     if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
     if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
-    return guarded(slices->memory, [&] {
+    return guarded([&] {
         const auto made = lightbin::shader_slabs(slices->value);
         return write_items(made.data(), made.size(), slabs, capacity, count, "slabs");
     });

@@ -75,14 +75,12 @@ inline lightbin_result read_format(const lightbin_format* given, ListFormat& for
 
 /// A Budget for each width of ids.
 struct lightbin_budget {
-    lightbin::c::Memory memory;
     lightbin::Budget<std::uint32_t> wide = {};
     lightbin::Budget<std::uint16_t> narrow = {};
 };
 
 /// A GridUnion for each width of ids.
 struct lightbin_grid_union {
-    lightbin::c::Memory memory;
     lightbin::GridUnion<std::uint32_t> wide = {};
     lightbin::GridUnion<std::uint16_t> narrow = {};
 };
@@ -144,15 +142,14 @@ lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* b
         });
 }
 
-lightbin_result lightbin_grid_union_create(const lightbin_allocator* allocator,
-                                           lightbin_grid_union** grid_union) {
+lightbin_result lightbin_grid_union_create(lightbin_grid_union** grid_union) {
     using namespace lightbin::c;
     if (grid_union == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "grid_union");
-    return make_handle(Memory(allocator), grid_union);
+    return make_handle(grid_union);
 }
 
 void lightbin_grid_union_destroy(lightbin_grid_union* grid_union) {
-    lightbin::c::destroy_handle(grid_union);
+    delete grid_union;
 }
 
 lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
@@ -163,7 +160,7 @@ lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const ligh
     if (result.error != LIGHTBIN_OK) return result;
     return with_grids(first, "first", second, "second", "second.id_bytes",
                       [&]<class Id>(const lightbin::LightGrid<Id>& one, const auto& other) {
-                          return guarded(grid_union->memory, [&] {
+                          return guarded([&] {
                               const auto made = of_width<Id>(*grid_union).unite(one, other);
                               if (!made) return refused(made.error());
                               write_grid(*made, grid);
@@ -174,14 +171,14 @@ lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const ligh
 
 #if !defined(LIGHTBIN_NO_BUDGETS)
 
-lightbin_result lightbin_budget_create(const lightbin_allocator* allocator, lightbin_budget** budget) {
+lightbin_result lightbin_budget_create(lightbin_budget** budget) {
     using namespace lightbin::c;
     if (budget == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "budget");
-    return make_handle(Memory(allocator), budget);
+    return make_handle(budget);
 }
 
 void lightbin_budget_destroy(lightbin_budget* budget) {
-    lightbin::c::destroy_handle(budget);
+    delete budget;
 }
 
 lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid, const float* weights,
@@ -194,7 +191,7 @@ lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid
         first_error(check_size(limited, "limited"), cut != nullptr ? check_size(cut, "cut") : succeeded());
     if (result.error != LIGHTBIN_OK) return result;
     return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& whole) {
-        return guarded(budget->memory, [&] {
+        return guarded([&] {
             const auto made =
                 of_width<Id>(*budget).limit(whole, {weights, weight_count}, {per_cell, per_frame});
             if (!made) return refused(made.error());

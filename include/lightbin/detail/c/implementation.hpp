@@ -17,8 +17,6 @@
 //   LIGHTBIN_NO_SIMD, LIGHTBIN_NO_SCALAR                            the vector kernels; the scalar ones (docs/install.md)
 #pragma once
 
-#include <lightbin/detail/c/memory.hpp>
-
 #if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_REDUCE_SHADERS)
 #define LIGHTBIN_NO_REDUCE_SHADERS 1
 #endif

@@ -9,7 +9,7 @@
 extern "C" {
 
 lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
-                                       const lightbin_allocator* allocator, lightbin_shader** shader) {
+                                       lightbin_shader** shader) {
     using namespace lightbin::c;
     if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
     lightbin_reduce_options given;
@@ -35,7 +35,7 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
         known.z_bounds = slot_of(given.z_bounds);
         known.grid = slot_of(given.grid);
     }
-    return make_shader(allocator, shader, [&] { return lightbin::reduce_shader(known); });
+    return make_shader(shader, [&] { return lightbin::reduce_shader(known); });
 }
 
 lightbin_result lightbin_shader_reduce(const lightbin_view* view, std::int32_t corner_x,

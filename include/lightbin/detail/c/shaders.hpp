@@ -6,64 +6,18 @@
 
 #include <lightbin/shader.hpp>
 
-/// A shader's text, bindings and the names of these, which follow the struct in the same piece of memory.
 struct lightbin_shader {
-    lightbin::c::Memory memory;
-    const char* text;
-    const lightbin_binding* bindings;
-    std::size_t binding_count;
+    lightbin::ShaderText value;
 };
 
 namespace lightbin {
 namespace c {
 
-/// Makes a handle with a copy of what shader_snippet() and the like return.
-inline lightbin_result make_shader(const Memory& memory, const ShaderText& made, lightbin_shader** shader) {
-    static_assert(alignof(lightbin_binding) <= alignof(lightbin_shader));
-    std::size_t bytes =
-        sizeof(lightbin_shader) + made.bindings.size() * sizeof(lightbin_binding) + made.text.size() + 1;
-    for (const ShaderBinding& binding : made.bindings)
-        bytes += binding.name.size() + 1;
-    char* const place = static_cast<char*>(memory.allocate(bytes));
-    if (place == nullptr) return refused(LIGHTBIN_OUT_OF_MEMORY, "");
-    char* const bindings = place + sizeof(lightbin_shader);
-    char* at = bindings + made.bindings.size() * sizeof(lightbin_binding);
-    const auto copy = [&](const std::string& text) {
-        char* const begin = at;
-        std::memcpy(begin, text.c_str(), text.size() + 1);
-        at += text.size() + 1;
-        return begin;
-    };
-    for (std::size_t i = 0; i < made.bindings.size(); ++i) {
-        const ShaderBinding& from = made.bindings[i];
-        const GlFormat gl = gl_format(from.format);
-        new (bindings + i * sizeof(lightbin_binding))
-            lightbin_binding{sizeof(lightbin_binding),
-                             static_cast<std::int32_t>(from.resource),
-                             copy(from.name),
-                             {from.slot.binding, from.slot.set},
-                             from.stride,
-                             from.bytes,
-                             from.width,
-                             gl.internal,
-                             gl.layout,
-                             gl.type,
-                             vk_format(from.format),
-                             dxgi_format(from.format),
-                             webgpu_format(from.format)};
-    }
-    *shader = new (place) lightbin_shader{
-        memory, copy(made.text), reinterpret_cast<const lightbin_binding*>(bindings), made.bindings.size()};
-    return succeeded();
-}
-
 /// Makes a handle of the text that make() returns.
-template <class Make>
-lightbin_result make_shader(const lightbin_allocator* allocator, lightbin_shader** shader, const Make& make) {
-    const Memory memory(allocator);
-    return guarded(memory, [&] {
-        const Result<ShaderText> made = make();
-        return made ? make_shader(memory, *made, shader) : refused(made.error());
+template <class Make> lightbin_result make_shader(lightbin_shader** shader, const Make& make) {
+    return guarded([&] {
+        Result<ShaderText> made = make();
+        return made ? make_handle(shader, std::move(*made)) : refused(made.error());
     });
 }
 
@@ -104,7 +58,7 @@ lightbin_result write_constants(const lightbin_view* view, To* to, const Argumen
 extern "C" {
 
 lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
-                                        const lightbin_allocator* allocator, lightbin_shader** shader) {
+                                        lightbin_shader** shader) {
     using namespace lightbin::c;
     if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
     lightbin_snippet_options given;
@@ -146,19 +100,19 @@ lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
         known.bins = slot_of(given.bins);
         known.view = slot_of(given.view);
     }
-    return make_shader(allocator, shader, [&] { return lightbin::shader_snippet(known); });
+    return make_shader(shader, [&] { return lightbin::shader_snippet(known); });
 }
 
 void lightbin_shader_destroy(lightbin_shader* shader) {
-    lightbin::c::destroy_handle(shader);
+    delete shader;
 }
 
 const char* lightbin_shader_text(const lightbin_shader* shader) {
-    return shader != nullptr ? shader->text : nullptr;
+    return shader != nullptr ? shader->value.text.c_str() : nullptr;
 }
 
 std::size_t lightbin_shader_binding_count(const lightbin_shader* shader) {
-    return shader != nullptr ? shader->binding_count : 0;
+    return shader != nullptr ? shader->value.bindings.size() : 0;
 }
 
 lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size_t index,
@@ -167,9 +121,24 @@ lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size
     if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
     const lightbin_result result = check_size(binding, "binding");
     if (result.error != LIGHTBIN_OK) return result;
-    if (index >= shader->binding_count)
-        return refused(LIGHTBIN_NOT_A_VALUE, "index", index, shader->binding_count);
-    write(shader->bindings[index], binding);
+    const std::vector<lightbin::ShaderBinding>& bindings = shader->value.bindings;
+    if (index >= bindings.size()) return refused(LIGHTBIN_NOT_A_VALUE, "index", index, bindings.size());
+    const lightbin::ShaderBinding& from = bindings[index];
+    const lightbin::GlFormat gl = gl_format(from.format);
+    write(lightbin_binding{0,
+                           static_cast<std::int32_t>(from.resource),
+                           from.name.c_str(),
+                           {from.slot.binding, from.slot.set},
+                           from.stride,
+                           from.bytes,
+                           from.width,
+                           gl.internal,
+                           gl.layout,
+                           gl.type,
+                           vk_format(from.format),
+                           dxgi_format(from.format),
+                           webgpu_format(from.format)},
+          binding);
     return result;
 }
 
@@ -187,7 +156,7 @@ lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint3
                                        std::size_t capacity) {
     using namespace lightbin::c;
     if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
-    return guarded(slices->memory, [&] {
+    return guarded([&] {
         const std::vector<std::uint32_t> made = lightbin::shader_slices(slices->value);
         return write_items(made.data(), made.size(), words, capacity, nullptr, "words");
     });

@@ -10,12 +10,10 @@
 #include <lightbin/z_bounds.hpp>
 
 struct lightbin_view {
-    lightbin::c::Memory memory;
     lightbin::View value;
 };
 
 struct lightbin_slices {
-    lightbin::c::Memory memory;
     lightbin::Slices value;
 };
 
@@ -44,15 +42,13 @@ inline lightbin_result read_view(const lightbin_view_options* given, std::option
 
 /// Makes a handle of the slices that make() returns.
 template <class Make>
-lightbin_result make_slices(float margin, const lightbin_allocator* allocator, lightbin_slices** slices,
-                            const Make& make) {
+lightbin_result make_slices(float margin, lightbin_slices** slices, const Make& make) {
     if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
     if (!(0 <= margin && margin <= 0.5f)) return refused(LIGHTBIN_NOT_A_VALUE, "margin");
-    const Memory memory(allocator);
-    return guarded(memory, [&] {
+    return guarded([&] {
         const Result<Slices> made = make();
         if (!made) return refused(made.error());
-        return make_handle(memory, slices, margin > 0 ? made->with_margin(margin) : *made);
+        return make_handle(slices, margin > 0 ? made->with_margin(margin) : *made);
     });
 }
 
@@ -98,13 +94,12 @@ std::uint32_t lightbin_version(void) {
     return 10000 * LIGHTBIN_VERSION_MAJOR + 100 * LIGHTBIN_VERSION_MINOR + LIGHTBIN_VERSION_PATCH;
 }
 
-lightbin_result lightbin_view_create(const lightbin_view_options* options,
-                                     const lightbin_allocator* allocator, lightbin_view** view) {
+lightbin_result lightbin_view_create(const lightbin_view_options* options, lightbin_view** view) {
     using namespace lightbin::c;
     if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
     std::optional<lightbin::View> made;
     const lightbin_result result = read_view(options, made);
-    return result.error != LIGHTBIN_OK ? result : make_handle(Memory(allocator), view, *made);
+    return result.error != LIGHTBIN_OK ? result : make_handle(view, *made);
 }
 
 lightbin_result lightbin_view_update(lightbin_view* view, const lightbin_view_options* options) {
@@ -117,7 +112,7 @@ lightbin_result lightbin_view_update(lightbin_view* view, const lightbin_view_op
 }
 
 void lightbin_view_destroy(lightbin_view* view) {
-    lightbin::c::destroy_handle(view);
+    delete view;
 }
 
 lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_info* info) {
@@ -196,28 +191,27 @@ double lightbin_view_window_depth(const lightbin_view* view, double view_depth) 
 }
 
 lightbin_result lightbin_slices_exponential(std::int32_t count, float first, float last, float margin,
-                                            const lightbin_allocator* allocator, lightbin_slices** slices) {
-    return lightbin::c::make_slices(margin, allocator, slices,
+                                            lightbin_slices** slices) {
+    return lightbin::c::make_slices(margin, slices,
                                     [=] { return lightbin::Slices::exponential(count, first, last); });
 }
 
 lightbin_result lightbin_slices_linear(std::int32_t count, float begin, float end, float margin,
-                                       const lightbin_allocator* allocator, lightbin_slices** slices) {
-    return lightbin::c::make_slices(margin, allocator, slices,
+                                       lightbin_slices** slices) {
+    return lightbin::c::make_slices(margin, slices,
                                     [=] { return lightbin::Slices::linear(count, begin, end); });
 }
 
 lightbin_result lightbin_slices_from_boundaries(const float* boundaries, std::size_t count, float margin,
-                                                const lightbin_allocator* allocator,
                                                 lightbin_slices** slices) {
     if (boundaries == nullptr && count > 0) return lightbin::c::refused(LIGHTBIN_NULL_ARGUMENT, "boundaries");
-    return lightbin::c::make_slices(margin, allocator, slices, [=] {
+    return lightbin::c::make_slices(margin, slices, [=] {
         return lightbin::Slices::from_boundaries({boundaries, count});
     });
 }
 
 void lightbin_slices_destroy(lightbin_slices* slices) {
-    lightbin::c::destroy_handle(slices);
+    delete slices;
 }
 
 std::int32_t lightbin_slices_count(const lightbin_slices* slices) {
@@ -251,7 +245,7 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
     const auto side = [&](float* bound) {
         return bound != nullptr ? std::span<float>{bound, to.tiles} : std::span<float>{};
     };
-    return guarded(view->memory, [&] {
+    return guarded([&] {
         const auto reduced = lightbin::reduce_depth(
             view->value,
             {{from.depth, from.count},

@@ -16,12 +16,12 @@ enum class LightKind : std::uint8_t { sphere, spot, box, mixed };
 template <LightKind kind> inline constexpr bool kernels_included = kind == LightKind::sphere;
 
 /// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for either.
-#if defined(LIGHTBIN_CALLERS_MEMORY) && defined(LIGHTBIN_NO_SPOTS)
+#if defined(LIGHTBIN_IMPLEMENTATION) && defined(LIGHTBIN_NO_SPOTS)
 inline constexpr bool kinds_have_spots = false;
 #else
 inline constexpr bool kinds_have_spots = true;
 #endif
-#if defined(LIGHTBIN_CALLERS_MEMORY) && defined(LIGHTBIN_NO_BOXES)
+#if defined(LIGHTBIN_IMPLEMENTATION) && defined(LIGHTBIN_NO_BOXES)
 inline constexpr bool kinds_have_boxes = false;
 #else
 inline constexpr bool kinds_have_boxes = true;
