@@ -6,11 +6,13 @@
 #   NAME...  of these platforms only
 #   --list   names them
 #   --quick  of each platform the lists alone
-# The tests of a platform:
+# The tests of a platform, or a script's of this folder:
 #   lists    tests/platforms/lists.cpp: every option and instruction set, hashes of the lists
 #   unit     tests/unit, as far as they need doctest and GLM alone
 #   oracle   tests/oracle: no light is missed, by exact arithmetic, in 1,000 lights of each family
 #   threads  tests/platforms/threads.cpp: Binners in several threads at once
+#   c        tests/c/contract.c: what lightbin.h promises
+#   guest    tests/guest: allocation and exceptions
 set -eu
 me=tests/platforms.sh
 cd "$(dirname "$0")/.."
@@ -97,7 +99,8 @@ judged() {
         diff "$out/reference" "$folder/lists.same" >&2
         return 1
         ;;
-    unit) sed -n 's/.* assertions: *\([0-9]*\) .*/\1 assertions/p' "$folder/unit.txt" ;;
+    unit | guest) sed -n 's/.* assertions: *\([0-9]*\) .*/\1 assertions/p' "$folder/$1.txt" ;;
+    c) cat "$folder/c.txt" ;;
     oracle) awk 'NF == 6 { cases += $2; missed += $5 } END { print cases " cases, " missed " missed" }' "$folder/oracle.txt" ;;
     threads) sed -n 's/\([0-9]* Binners at once\).*/\1/p' "$folder/threads.txt" ;;
     esac
@@ -149,6 +152,7 @@ get() {
     shift
     (install_packages "$@") || return 1
     case $name in
+    neighbours) unpack_packages "$out/qt" qtbase5-dev ;; # of Qt the headers alone are read
     libc++-14) unpack_packages "$out/libc++-14.files" libc++-14-dev libc++abi-14-dev ;;
     windows) start_wine ;;
     esac
@@ -231,22 +235,40 @@ with em++ "$simd" "$emscripten_link -sPTHREAD_POOL_SIZE=16"
 platform wasm-threads "the same with threads" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js "lists threads"
 
 with g++-12 "-std=c++20 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
-platform address "address and undefined behaviour sanitizer, g++ 12" "" any
+platform address "address and undefined behaviour sanitizer, g++ 12" "" any "" "" "$all c guest"
 with clang++-19 "-std=c++20 -O1 -g -fsanitize=thread"
 platform thread "thread sanitizer, clang 19" "clang-19 libclang-rt-19-dev" any "" "" "lists threads"
 # Only what is compiled here says what it has written: no test library, no compiled part of the standard one.
 with clang++-19 "-std=c++20 -O1 -g -fsanitize=memory -D_GLIBCXX_EXTERN_TEMPLATE=0"
 platform memory "memory sanitizer, clang 19" "clang-19 libclang-rt-19-dev" scalar "" "" lists
 
-# Microsoft's compiler, as far as clang keeps its rules: code is made of all, and each header is read alone. Not run.
-words="Microsoft's rules, clang 19, C++20 and C++23"
-if is_wanted microsoft "$words"; then
+# script NAME WORDS PACKAGES PATH ARGUMENT...: a script of the tests', whose last line goes into the table
+script() {
+    name=$1 words=$2 packages=$3 path=$4
+    shift 4
+    is_wanted "$name" "$words" || return 0
     said="FAILED, see $folder/log.txt"
-    (install_packages clang-19 libc++-19-dev mingw-w64-x86-64-dev binutils) &&
-        sh tests/guest/microsoft.sh "$out/headers" alone >"$folder/log.txt" 2>&1 &&
-        said="compiled, not run; $(tail -n 1 "$folder/log.txt")"
-    result microsoft "$words" "all of x86-64" "$said"
-fi
+    # shellcheck disable=SC2086  # one word a package
+    get "$name" $packages && sh "tests/$path" "$@" >"$folder/log.txt" 2>&1 && said=$(tail -n 1 "$folder/log.txt")
+    result "$name" "$words" - "$said"
+}
+for version in 14 19; do
+    script compile-$version "no warning, clang $version" "clang-$version g++-aarch64-linux-gnu" guest/compile.sh clang++-$version
+    script standards-$version "C++17 is refused in a sentence, clang $version" clang-$version guest/standards.sh clang++-$version
+    script c-$version "lightbin.h in each language, clang $version" clang-$version \
+        c/languages.sh clang-$version clang++-$version
+done
+script refused-19 "mistakes are refused in a sentence, clang 19" clang-19 guest/refused.sh clang++-19
+script two-units "differently compiled units in one program, g++ 12" qemu-user-static \
+    guest/two_units.sh g++-12 qemu-x86_64-static "$out/headers"
+script open-alone "each file alone, g++ 12" "" guest/open_alone.sh g++-12
+script flavours "each flag for instructions in the namespace's name, g++ 12, clang 19" clang-19 guest/flavours.sh g++-12 clang++-19
+script neighbours "behind the headers of Qt and X11, g++ 12" libx11-dev guest/neighbours.sh g++-12 "$out/qt/usr/include/x86_64-linux-gnu/qt5"
+script c-size "lightbin.h: size, and without exceptions, g++ 12" "" c/size.sh --check
+script c-windows "lightbin.h: a DLL, MinGW g++ 12" "g++-mingw-w64-x86-64-posix wine wine64" c/mingw.sh x86_64-w64-mingw32-g++-posix
+# Microsoft's compiler, as far as clang keeps its rules: code is made of all, and each header is read alone. Not run.
+script microsoft "Microsoft's rules, clang 19, C++20 and C++23" "clang-19 libc++-19-dev mingw-w64-x86-64-dev binutils" \
+    guest/microsoft.sh "$out/headers" alone
 
 [ -z "$listing" ] || exit 0
 for name in $wanted; do

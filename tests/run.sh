@@ -1,35 +1,25 @@
 #!/bin/sh
-# Runs the tests: `sh tests/run.sh [--quick]` on Debian 12, as root or with sudo. Installs the packages that are missing,
-# configures and builds in build/dev, runs the tests, and says how far it is.
-#   (nothing)  all tests but those that have a command of their own, see docs/tour.md
-#   --quick    the most telling ones, and builds only those
+# Runs the tests for this machine: `sh tests/run.sh` on Debian 12, as root or with sudo. Installs the packages that are missing,
+# configures and builds in build/dev, runs the tests, and says how far it is. docs/tour.md lists the tests that have commands
+# of their own, such as those of other compilers and machines.
 set -eu
 me=tests/run.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
-takes "nothing, --quick" --quick "$@"
-quick=${1-}
+takes "" "" "$@"
 
-compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
-tools="cmake ninja-build pkgconf python3"
-emulators="g++-aarch64-linux-gnu qemu-user-static" # 64-bit ARM, and x86-64 without AVX and with AVX2
-x86_32="g++-12-multilib" # a machine of 32 bits
-microsoft="libc++-19-dev mingw-w64-x86-64-dev g++-mingw-w64-x86-64-posix" # the libraries behind a compiler by Microsoft's rules; MinGW's
+tools="g++ cmake ninja-build pkgconf python3"
 libraries="doctest-dev libglm-dev libeigen3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
-macros="libx11-dev" # that others' headers define
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 javascript="emscripten node-acorn binaryen nodejs node-typescript"
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $macros $opengl $javascript $shaders
-
-# Of Qt the headers alone are read.
+install_packages $tools $libraries $oracle $examples $renderers $opengl $javascript $shaders
 make_build_folder
-unpack_packages build/qt qtbase5-dev || fail "qtbase5-dev could not be fetched, see build/qt/download.log"
 
 # follow COMMAND...: waits for the last process in the background. Until then says what COMMAND prints: every 20 seconds,
 # or on a terminal every second on the same line.
@@ -64,18 +54,14 @@ say_tested() {
 jobs=$(nproc)
 echo "$me: configuring and building in build/dev"
 cmake --preset dev -DLIGHTBIN_ALL_TESTS=ON >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
-cmake --build --preset dev -j "$jobs" ${quick:+--target quick} >build/dev-build.log 2>&1 &
+cmake --build --preset dev -j "$jobs" >build/dev-build.log 2>&1 &
 follow say_built || {
     sed -n '/^FAILED/,$p' build/dev-build.log | grep -v '^\[[0-9]*/[0-9]*\]' | head -n 100
     fail "the build failed; the full log is build/dev-build.log"
 }
 
-echo "$me: running the tests${quick:+ (quick)}"
-# In the quick form random cases are as few as in an emulator.
-[ -z "$quick" ] || export LIGHTBIN_TEST_SHARE=16
-some='^(unit|oracle_families.*|oracle_cells_(symmetric|orthographic_off_centre)|gl_pictures_nova_430)$'
-# On ARM programs are built for the emulator, which takes long.
-ctest --preset dev -j "$jobs" ${quick:+-R "$some" -E aarch64} >build/dev-tests.log 2>&1 &
+echo "$me: running the tests"
+ctest --preset dev -j "$jobs" >build/dev-tests.log 2>&1 &
 failed=
 follow say_tested || failed=yes
 # What each failed test said, and the summary; no line for those that passed.
@@ -90,4 +76,6 @@ case $tiers in
 *avx512*) ;;
 *) echo "$me: LEFT OUT for want of a machine: AVX-512 (Ice Lake, Zen 4 and later have all that it takes)" ;;
 esac
-echo "$me: every ${quick:+quick }test passed"
+echo "$me: processor time, user and system, of this script and of all that it ran:"
+times
+echo "$me: every test passed"

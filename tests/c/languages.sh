@@ -1,9 +1,10 @@
 #!/bin/sh
-# languages.sh LIBRARY: lightbin.h has no warning as C99, C11 and C++11 to 17, with gcc and clang, and the program of
-# each language has the promises kept by LIBRARY, a shared library of the C side.
+# languages.sh C_COMPILER CXX_COMPILER [LIBRARY]: lightbin.h has no warning as C99, C11 and C++11 to 20. Given LIBRARY, a shared
+# library of the C side, it keeps the promises to the program of each language, and the C of the documentation does what it
+# says.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-library=$1
+c_compiler=$1 cxx_compiler=$2 library=${3-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -13,22 +14,21 @@ try() {
     standard=$2
     language=$3
     shift 3
-    "$compiler" -std="$standard" -pedantic -Wall -Wextra -Wconversion -Wshadow -Wundef -Werror "$@" -DLIGHTBIN_SHARED \
-        -I "$here/../../include" -o "$work/program" -x "$language" "$here/contract.c" -x none "$library" \
-        -Wl,-rpath,"$(dirname "$library")"
-    "$work/program" >/dev/null
+    set -- -std="$standard" -pedantic -Wall -Wextra -Wconversion -Wshadow -Wundef -Werror "$@" -DLIGHTBIN_SHARED \
+        -I "$here/../../include" -x "$language" "$here/contract.c"
+    if [ -n "$library" ]; then
+        "$compiler" "$@" -x none "$library" -Wl,-rpath,"$(dirname "$library")" -o "$work/program"
+        "$work/program" >/dev/null
+    else
+        "$compiler" "$@" -fsyntax-only
+    fi
     echo "$compiler -std=$standard"
 }
-
-for compiler in gcc clang-14 clang-19; do
-    for standard in c99 c11; do
-        try $compiler $standard c -Wstrict-prototypes
-    done
+for standard in c99 c11; do
+    try "$c_compiler" $standard c -Wstrict-prototypes
 done
-for compiler in g++ clang++-14 clang++-19; do
-    for standard in c++11 c++14 c++17 c++20; do
-        try $compiler $standard c++
-    done
+for standard in c++11 c++14 c++17 c++20; do
+    try "$cxx_compiler" $standard c++
 done
 
 # In C++20 it stands beside every header of the C++ side, before or behind them, and its values are those of abi.txt.
@@ -41,7 +41,7 @@ for order in 'c cpp' 'cpp c'; do
 done
 
 # The file of the code, if it is compiled as C, is refused by one sentence.
-if gcc -std=c99 -DLIGHTBIN_IMPLEMENTATION -I "$here/../../include" -fsyntax-only -x c - 2>"$work/said" <<END
+if "$c_compiler" -std=c99 -DLIGHTBIN_IMPLEMENTATION -I "$here/../../include" -fsyntax-only -x c - 2>"$work/said" <<END
 #include <lightbin/lightbin.h>
 END
 then
@@ -49,6 +49,7 @@ then
 fi
 [ "$(grep -c ' error: ' "$work/said")" -eq 1 ]
 grep -q 'is C++20, not C' "$work/said"
+[ -n "$library" ] || { echo "six languages, no warning"; exit; }
 
 # blocks PAGE: its blocks of C
 blocks() {
@@ -56,7 +57,7 @@ blocks() {
 }
 # run_page FILE: compiles it as C99 and runs it
 run_page() {
-    gcc -std=c99 -pedantic -Wall -Wextra -Werror -DLIGHTBIN_SHARED -I "$here/../../include" -o "$work/program" "$1" "$library" \
+    "$c_compiler" -std=c99 -pedantic -Wall -Wextra -Werror -DLIGHTBIN_SHARED -I "$here/../../include" -o "$work/program" "$1" "$library" \
         -Wl,-rpath,"$(dirname "$library")"
     "$work/program"
 }

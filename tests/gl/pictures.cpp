@@ -27,8 +27,8 @@ int draw_all(int glsl, int dropped_light, const Scene& scene) {
     Renderer renderer(scene, context.glsl());
     const Camera& camera = scene.cameras.front();
     FrameSettings frame;
-    frame.width = 333;
-    frame.height = 217;
+    frame.width = 165;
+    frame.height = 107;
     frame.exposure = renderer.meter(camera, frame);
     const auto every_light = [&](DepthUse depth) {
         frame.depth = depth;

@@ -1,8 +1,8 @@
 #!/bin/sh
 # compile.sh COMPILER [alone]: the headers give no warning, used all of them, with and without exceptions and assertions, as
-# C++20 and as C++23. What g++ says may depend on how it optimises, so plain_unit and tuned_unit of CMakeLists.txt, which are
-# compiled with the same warnings and all that this script leaves out, belong to this. What clang says comes from reading
-# and from the first, unoptimised code; microsoft.sh has it optimise.
+# C++20 and as C++23. What g++ says may depend on how it optimises: two_units.sh has it make code, with the same warnings and
+# all that this script leaves out. What clang says comes from reading and from the first, unoptimised code; microsoft.sh has
+# it optimise.
 # By one compiler each public header is read alone, too: where one lacks an include, it does so with all that read the same
 # standard library. What lies in detail/, which users do not include, is read alone with `alone`.
 set -eu
@@ -58,6 +58,8 @@ clang*)
     own=
     "$compiler" -Werror -march=native -x c++ -fsyntax-only /dev/null 2>/dev/null || own=-w
     all -std=c++20 -O0 -c -march=native $own
+    # 64-bit ARM, whose vectors it takes otherwise than g++.
+    all --target=aarch64-linux-gnu -std=c++20 -fsyntax-only
     ;;
 esac
 compile -w -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"

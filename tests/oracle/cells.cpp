@@ -203,11 +203,11 @@ void prove(const std::string& kind, const std::vector<Camera>& cameras) {
         const char* name;
         const Tally& tally;
         std::uint64_t least;
-    } methods[] = {{"rectangles", rectangles, 100000},
-                   {"silhouettes", silhouettes, 10000},
-                   {"intervals", intervals, 100000},
-                   {"boxes", boxes, 100000},
-                   {"split boxes", split_boxes, 100000}};
+    } methods[] = {{"rectangles", rectangles, 30000},
+                   {"silhouettes", silhouettes, 3000},
+                   {"intervals", intervals, 30000},
+                   {"boxes", boxes, 30000},
+                   {"split boxes", split_boxes, 30000}};
     for (const auto& [name, tally, least] : methods) {
         MESSAGE(kind << ", " << std::string(name) << ": " << tally.verdicts << " exact verdicts ("
                      << tally.twice << " of them by both deciders), " << tally.explained << " explained");

@@ -5,10 +5,11 @@
 # Left out: what measures time or needs a library more than doctest and GLM, and the tiers, which lists.cpp compares.
 unit := $(filter-out %/advise.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
 one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
-headers := $(shell find include tests/unit tests/oracle tests/split_mix.hpp bench/exact bench/pool.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
+headers := $(shell find include tests/unit tests/oracle tests/guest tests/split_mix.hpp bench/exact bench/pool.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
 compile = $(CXX) $(level) $(FLAGS) $(THREADS) -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
 level = -O1
 $(OUT)/lists.o $(OUT)/engine.o: level = -O2
+$(OUT)/lightbin.o $(OUT)/contract.o: level = -O0
 link = $(CXX) $(FLAGS) $(THREADS) -o $@ $^ $(LINK)
 
 $(OUT)/%$(EXE): $(OUT)/%.o
@@ -18,6 +19,10 @@ $(OUT)/lists$(EXE): $(addprefix $(OUT)/,lists.o garbage.o)
 $(OUT)/unit$(EXE): $(addprefix $(OUT)/,doctest_main.o unit_one.o unit_two.o)
 	$(link)
 $(OUT)/oracle$(EXE): $(addprefix $(OUT)/,campaign.o judge.o engine.o)
+	$(link)
+$(OUT)/guest$(EXE): $(addprefix $(OUT)/,doctest_main.o allocation.o exceptions.o counted_new.o)
+	$(link)
+$(OUT)/c$(EXE): $(addprefix $(OUT)/,contract.o lightbin.o)
 	$(link)
 
 $(OUT)/unit_one.o: $(filter $(one),$(unit))
@@ -30,4 +35,11 @@ $(OUT)/%.o: tests/platforms/%.cpp $(headers)
 	$(compile) $<
 $(OUT)/%.o: tests/oracle/%.cpp $(headers)
 	$(compile) -DORACLE_WITHOUT_GMP $<
+$(OUT)/%.o: tests/guest/%.cpp $(headers)
+	$(compile) $<
+$(OUT)/contract.o: tests/c/contract.c $(headers)
+	$(compile) -x c++ $<
+# Of the kernels the scalar ones are enough.
+$(OUT)/lightbin.o: packaging/lightbin.cpp $(headers)
+	$(compile) -DLIGHTBIN_NO_SIMD $<
 .SECONDARY:
