@@ -187,7 +187,11 @@ template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) 
         };
         const double start = now_ns();
         const bool cones = way.cones && !lights.spots.empty();
-        if (!cones) least->assign(lights.spots.begin(), lights.spots.end());
+        if (!cones) {
+            least->clear();
+            for (const lightbin::Spot& spot : lights.spots)
+                least->push_back(lightbin::least_sphere(spot));
+        }
         const auto grid = cones ? bin(lights.spots) : bin(lights.spots.empty() ? lights.spheres : *least);
         const double ns = now_ns() - start;
         if (counts == nullptr) return ns;

@@ -80,7 +80,8 @@ TEST_CASE("lights that are switched off are no bad input, whatever their other n
     const glm::vec3 a(1, 2, 3), b(7, 2, 11);
     for (const Sphere& made :
          {tube_sphere(a, b, -1), rectangle_sphere(a, b, b, -1), least_sphere(spots[0]), bounding_sphere(boxes[0]),
-          bounding_sphere(half_sphere(spheres[0], a)), bounding_sphere(tube_box(a, b, -1)), AsLight()(glm::dvec4(0, 0, -5, -1))})
+          bounding_sphere(half_sphere(spheres[0], a)), bounding_sphere(tube_box(a, b, -1)),
+          AsLight()(glm::vec4(0, 0, -5, -1))})
         CHECK(made.radius == -1);
 }
 
