@@ -706,7 +706,7 @@ static void test_cull(void) {
                   "slices"));
     CHECK(lightbin_plan_cull(view, &options, 9, 9, slices, NULL, &plan).error == LIGHTBIN_TOO_MANY_SLICES);
     lightbin_slices_destroy(slices);
-    CHECK(lightbin_slices_linear(1025, 1, 2000, 0, NULL, &slices).error == LIGHTBIN_OK);
+    CHECK(lightbin_slices_linear(1025, 1, 2000, 0, &slices).error == LIGHTBIN_OK);
     options.ids = LIGHTBIN_U32;
     CHECK(lightbin_plan_cull(view, &options, 0xffffffffu, 9, slices, NULL, &plan).error ==
           LIGHTBIN_SCRATCH_TOO_LARGE);
