@@ -77,9 +77,9 @@ template <lightbin::Options options> ShapeMethod shape_method(const char* name, 
     return {name, exact, clusters, [=](const AnyLight& any, const lightbin::ZBounds& bounds) {
                 return std::visit(
                     [&](const auto& light) {
+                        const std::array lights = {light};
                         return binner
-                            ->bin(view, lightbin::view_space(std::array{light}),
-                                  lightbin::inputs_for<options>(bounds, slices))
+                            ->bin(view, lightbin::view_space(lights), lightbin::inputs_for<options>(bounds, slices))
                             ->ranges();
                     },
                     any);
