@@ -99,7 +99,7 @@ TEST_CASE("what became of the lights, and how long the lists are") {
     auto lights = test::random_lights(150, 23);
     std::erase_if(lights, [](const glm::vec4& light) { return light.z > -5; });  // leaves tiles empty
     lights.resize(20);
-    lights[7].w = -1;
+    lights[7].w = -2;
     lights[11].x = std::nanf("");
     lights[13] = {0, 0, 50, 1};  // behind the eye
     Binner<> binner;
