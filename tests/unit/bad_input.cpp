@@ -53,7 +53,7 @@ TEST_CASE("lights that are switched off are no bad input, whatever their other n
     const std::vector<Sphere> spheres = {{0, 0, -5, -1}, {not_a_number, inf, 0, -1}, {0, 0, -5, -2}, {0, 0, -5, 1}};
     std::vector<Spot> spots;
     std::vector<Box> boxes;
-    std::vector<glm::dvec4> vec4s;
+    std::vector<glm::vec4> vec4s;
     for (const Sphere& s : spheres) {
         vec4s.emplace_back(s.x, s.y, s.z, s.radius);
         spots.push_back({s.x, s.y, s.z, s.radius, 0, 0, s.radius < 0 ? s.x : 1, 0.5f});  // without an axis if off
