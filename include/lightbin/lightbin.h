@@ -973,7 +973,7 @@ typedef struct lightbin_cull_options {
     uint32_t count_at;       /* with count_in_buffer: the index of the word that holds the number */
     int32_t ids;             /* LIGHTBIN_U32, or LIGHTBIN_U16: then each word of `lists` holds two ids */
     int32_t depth_test;      /* a lightbin_depth_test; SPLIT_BOX is an error; with clusters, INTERVAL is, too */
-    int32_t slicing;         /* a lightbin_slicing; Z_BINS is an error */
+    int32_t slicing;         /* LIGHTBIN_NO_SLICING or LIGHTBIN_CLUSTERS */
     /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
     int32_t max_only;
     int32_t orthographic; /* that of lightbin_view_info */

@@ -45,14 +45,19 @@ inline Point direction(Random& random) {
     }
 }
 
+/// By the words of the library: in no list, as bad input or as switched off.
+inline bool is_unlit(const Sphere& light) {
+    return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0);
+}
+
 /// By the words of the library: skipped and counted.
 inline bool is_bad(const Sphere& light) {
-    return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0);
+    return is_unlit(light) && light.radius != -1;
 }
 
 /// Whether a point is in a sphere, surface included, beyond doubt.
 inline bool surely_inside(const Sphere& light, const Point& point) {
-    if (is_bad(light)) return false;
+    if (is_unlit(light)) return false;
     if (light.radius == infinite) return true;
     Real square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -154,7 +159,7 @@ public:
         for (int i = 0; i < 40; ++i) {
             const std::uint32_t id = static_cast<std::uint32_t>(random_.below(std::size_t{count}));
             const Sphere& light = scene_.lights[id];
-            if (!is_bad(light) && light.radius != infinite) {
+            if (!is_unlit(light) && light.radius != infinite) {
                 const Long reach = static_cast<Long>(light.radius) * random_.log_between(1e-3, 1);
                 scene_.inside.push_back({id, centre(light)});
                 scene_.inside.push_back({id, extreme_point(light)});

@@ -8,7 +8,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Whether a light is switched off: see Sphere.
 template <class Real> bool is_off(Real radius) {
-    return radius == -1;
+    return radius <= -1 && radius >= -1;
 }
 
 /// Returns a Sphere that is in no list: switched off if this radius says so, else bad input, which is counted.

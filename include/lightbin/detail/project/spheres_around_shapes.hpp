@@ -21,7 +21,8 @@ inline Sphere least_sphere(const Spot& spot) {
     const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),
                  radius = static_cast<double>(spot.radius);
     const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
-    if (cosine == -1 || detail::is_off(radius)) return own;
+    if (cosine <= -1 && cosine >= -1) return own;
+    if (detail::is_off(radius)) return own;
     if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1))
         return detail::unlit_sphere(radius);
     if (cosine <= 0 || spot.radius == detail::infinity) return own;
