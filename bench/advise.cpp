@@ -11,7 +11,6 @@
 #include "built.hpp"
 #include "console.hpp"
 #include "glb_scenes.hpp"
-#include "ladder.hpp"
 
 #include <lightbin/advise.hpp>
 
@@ -53,33 +52,25 @@ template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
     const auto add = [&]<lightbin::Options options> {
         for (const int tile_size : tile_sizes)
-            all.push_back({.plan = {.footprint = options.footprint,
-                                    .depth_test = options.depth_test,
+            all.push_back({.plan = {.depth_test = options.depth_test,
                                     .slicing = options.slicing,
                                     .tile_size = tile_size},
                            .ids = options.ids,
                            .build = builder<options>()});
     };
-    const auto add_method = [&]<Method method> {
+    const auto add_method = [&]<bool depth_test> {
         constexpr auto with = [](IdWidth ids, Slicing slicing) {
-            return lightbin::Options{.ids = ids,
-                                     .footprint = method.footprint,
-                                     .depth_test = method.depth_test,
-                                     .slicing = slicing,
-                                     .isa = isa};
+            return lightbin::Options{.ids = ids, .depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
         add.template operator()<with(IdWidth::u16, Slicing::none)>();
-        if constexpr (method.depth_test == DepthTest::none || method.depth_test == DepthTest::box)
-            add.template operator()<with(IdWidth::u32, Slicing::clusters)>();
-        if constexpr (method.depth_test == DepthTest::none) {
+        add.template operator()<with(IdWidth::u32, Slicing::clusters)>();
+        if constexpr (!depth_test) {
             add.template operator()<with(IdWidth::u32, Slicing::none)>();
             add.template operator()<with(IdWidth::u32, Slicing::z_bins)>();
         }
     };
-    [&]<std::size_t... method>(std::index_sequence<method...>) {
-        (add_method.template operator()<ladder[method]>(), ...);
-    }
-    (std::make_index_sequence<std::size(ladder)>{});
+    add_method.template operator()<false>();
+    add_method.template operator()<true>();
     return all;
 }
 
@@ -130,8 +121,8 @@ std::string words(const Plan& plan, IdWidth ids) {
     if (!plan.tiled) return "no tiling";
     const std::string slicing =
         plan.slicing == Slicing::none ? "" : std::string(" ") + to_string(plan.slicing);
-    return std::to_string(plan.tile_size) + " px " + to_string(plan.footprint) + " " +
-           to_string(plan.depth_test) + slicing + " " + to_string(ids);
+    return std::to_string(plan.tile_size) + " px " + (plan.depth_test ? "box" : "none") + slicing + " " +
+           to_string(ids);
 }
 
 /// What is known of depth.
@@ -148,7 +139,7 @@ bool allowed(Known known, const Candidate& candidate) {
     if (candidate.ids != ids_of(known)) return false;
     if (known == Known::bounds) return candidate.plan.slicing == Slicing::none;
     const bool needs_bounds =
-        candidate.plan.depth_test != DepthTest::none && candidate.plan.slicing != Slicing::clusters;
+        candidate.plan.depth_test && candidate.plan.slicing != Slicing::clusters;
     return !needs_bounds && (known == Known::samples || candidate.plan.slicing == Slicing::none);
 }
 

@@ -41,8 +41,6 @@
 
 namespace {
 
-using lightbin::DepthTest;
-using lightbin::Footprint;
 using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Options;
@@ -147,8 +145,8 @@ struct FrameViews {
     std::vector<std::size_t> view_of;
 };
 
-/// A build against the baseline, which has the depth test `interval` too; against clearing the tile table, and of a
-/// million lights against reading them. Then what threads gain, if there are several.
+/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million
+/// lights against reading them. Then what threads gain, if there are several.
 template <Options options>
 void time_build(const std::string& name, const Set<Frame>& set, int tile_size, int thread_count) {
     const std::vector<Frame>& frames = set.frames();
@@ -157,14 +155,12 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
     const lightbin::Parallel threads =
         thread_count > 1 ? lightbin::Parallel(std::size_t(thread_count), loop) : lightbin::Parallel();
     Build<options> build(tile_size);
-    const MadeBounds& made = build.made();
     Flat<float> flat;
     std::vector<char> table(sizeof(lightbin::ListRange) * views.views[0].tile_count());
     std::vector<Work<Frame>> works = {
         [&](const Frame& frame) { return build(views.view(frame), frame.lights, threads); },
         [&](const Frame& frame) {
-            flat.build<options.depth_test == DepthTest::interval>(views.flat_view(frame), frame.lights,
-                                                                  made.min.data(), made.max.data());
+            flat.build<false>(views.flat_view(frame), frame.lights, nullptr, nullptr);
             return flat.indices.size();
         },
         [&](const Frame&) {
@@ -176,9 +172,7 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
             read(frame.lights);
             return std::size_t{0};
         });
-    if (options.footprint == Footprint::rectangle &&
-        (options.depth_test == DepthTest::none || options.depth_test == DepthTest::interval))
-        check_same_length(name, works[0](frames[0]), works[1](frames[0]));
+    if (!options.depth_test) check_same_length(name, works[0](frames[0]), works[1](frames[0]));
     const Turns turns = take_turns(frames, seconds_a_case, works);
     add_result(name, options, "flat", turns, 0, 1, set.lights);
     add_result(name, options, "clearing", turns, 0, 2, set.lights);
@@ -194,8 +188,7 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
         results.push_back({name, to_string(options.isa), to, gain, 0});
 }
 
-/// Clusters against the baseline; z-bins against the same build without them, and bitmasks without lists against
-/// building lists and encoding those.
+/// Clusters against the baseline, z-bins against the same build without them.
 template <Options options> void time_slices(const std::string& name, const Set<Frame>& set) {
     constexpr bool clusters = options.slicing == Slicing::clusters;
     constexpr Options without = [] {
@@ -217,23 +210,6 @@ template <Options options> void time_slices(const std::string& name, const Set<F
                       };
     add_result(name, options, clusters ? "flat" : "none", take_turns(frames, seconds_a_case, {ours, theirs}),
                0, 1, set.lights);
-    if constexpr (options.slicing == Slicing::z_bins) {
-        if (set.lights > 1024) return;
-        const lightbin::ListFormat format = {.encoding = lightbin::ListEncoding::bitmask, .max_lights = 1024};
-        std::vector<std::uint32_t> bits(lightbin::encoded_bytes(format, view.tile_count(), 0) / 4);
-        const Work<Frame> write = [&](const Frame& frame) {
-            return build.binner()
-                .bin_bits(view, frame.lights, format.max_lights, bits, {.slices = build.slices()})
-                .has_value();
-        };
-        const Work<Frame> encode = [&](const Frame& frame) {
-            return lightbin::encode(build.grid(view, frame.lights), format,
-                                    std::as_writable_bytes(std::span(bits)))
-                .has_value();
-        };
-        add_result(name, options, "bits: encoding", take_turns(frames, seconds_a_case, {write, encode}), 0, 1,
-                   set.lights);
-    }
 }
 
 /// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so
@@ -297,30 +273,22 @@ void time_kind(const std::string& name, const Set<KindFrame<Light>>& set) {
     if (works.size() > 2) add_result(name, options, "spots", turns, 0, 2, set.lights);
 }
 
-template <Options options> std::string method_name() {
-    return std::string(to_string(options.footprint)) + "/" + to_string(options.depth_test);
+constexpr const char* name_of(bool depth_test) {
+    return depth_test ? "box" : "none";
 }
 
 template <Options options = Options{}>
 void add_builds(const Set<Frame>& set, int tile_size, const std::string& suffix = "") {
     add_cases<options>(
-        set.name + suffix + text("/%zu/%dpx/", set.lights, tile_size) + method_name<options>(),
+        set.name + suffix + text("/%zu/%dpx/", set.lights, tile_size) + name_of(options.depth_test),
         [=]<Options one>(const std::string& name) { time_build<one>(name, set, tile_size, 1); });
-}
-
-void add_rungs(const Set<Frame>& set, int tile_size) {
-    add_builds<Options{.depth_test = DepthTest::interval}>(set, tile_size);
-    add_builds<Options{.depth_test = DepthTest::box}>(set, tile_size);
-    add_builds<Options{.depth_test = DepthTest::split_box}>(set, tile_size);
-    add_builds<Options{.footprint = Footprint::silhouette}>(set, tile_size);
-    add_builds<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(set, tile_size);
 }
 
 /// 2, 4, ... threads, as far as the machine has them, on the two widest instruction sets.
 void add_threads(const Set<Frame>& set, int tile_size) {
     const int most = int(std::thread::hardware_concurrency());
     for (int threads = 2; threads <= most; threads *= 2) {
-        const std::string name = set.full_name() + text("/%dpx/", tile_size) + method_name<Options{}>() +
+        const std::string name = set.full_name() + text("/%dpx/", tile_size) + name_of(false) +
                                  text("/%d threads", threads);
         const auto add = [&]<Options one>() {
             cases.push_back(
@@ -346,7 +314,7 @@ void add_set(const std::string& name, float median, double footprint, bool quick
             if (footprint * double(n) * 1024 / (tile * tile) > 6e7) continue;  // gigabytes of lists
             add_builds(set, tile);
             if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
-                add_rungs(set, tile);
+                add_builds<Options{.depth_test = true}>(set, tile);
             if (tile == 32 && n == 10000) add_builds<Options{.ids = IdWidth::u16}>(set, tile, "-u16");
             if (tile == 32 && n >= 10000) add_threads(set, tile);
         }
@@ -370,16 +338,16 @@ void add_scene(const std::string& path, bool quick) {
 }
 
 /// Clusters and z-bins of the field sets.
-template <Slicing slicing, DepthTest depth_test = DepthTest::none> void add_slices(const Set<Frame>& set) {
+template <Slicing slicing, bool depth_test = false> void add_slices(const Set<Frame>& set) {
     add_cases<Options{.depth_test = depth_test, .slicing = slicing}>(
-        "slices/" + set.full_name() + "/" + to_string(slicing) + "/" + to_string(depth_test),
+        "slices/" + set.full_name() + "/" + to_string(slicing) + "/" + name_of(depth_test),
         [=]<Options one>(const std::string& name) { time_slices<one>(name, set); });
 }
 
 void add_all_slices(bool quick) {
     const auto add_clusters = [](const Set<Frame>& set) {
         add_slices<Slicing::clusters>(set);
-        add_slices<Slicing::clusters, DepthTest::box>(set);
+        add_slices<Slicing::clusters, true>(set);
     };
     for (const std::size_t n : {256u, 1000u, 4096u, 10000u}) {
         const Set<Frame> set = field_set("field20", field20_median, n);
@@ -393,9 +361,9 @@ void add_all_slices(bool quick) {
     add_slices<Slicing::z_bins>(field_set("field4", field4_median, 10000));
 }
 
-template <DepthTest depth_test = DepthTest::none> void add_sources(const Set<WorldFrame>& set) {
+template <bool depth_test = false> void add_sources(const Set<WorldFrame>& set) {
     add_cases<Options{.depth_test = depth_test}>(
-        "sources/" + set.name + "/" + to_string(depth_test),
+        "sources/" + set.name + "/" + name_of(depth_test),
         [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
 }
 
@@ -413,7 +381,7 @@ template <class Light> struct KindSet {
 
 template <Options options, class Light> void add_kind(const KindSet<Light>& kind) {
     const std::string name =
-        kind.name + text("/%zu/", kind.lights) + method_name<options>() + "/" + to_string(options.slicing);
+        kind.name + text("/%zu/", kind.lights) + name_of(options.depth_test) + "/" + to_string(options.slicing);
     // The lists have the same lengths on every instruction set.
     const Set<KindFrame<Light>> set = {name, kind.lights, [=] {
                                            constexpr int tile_size = usual_tile_size(options);
@@ -436,12 +404,9 @@ void add_all_spots(bool quick) {
                     return SpotFrame{spot_field(count, median, seed), field(count, median, seed)};
                 }};
             add_kind<Options{}>(set);
-            add_kind<Options{.footprint = Footprint::silhouette}>(set);
-            add_kind<Options{.depth_test = DepthTest::interval}>(set);
-            add_kind<Options{.depth_test = DepthTest::box}>(set);
-            add_kind<Options{.depth_test = DepthTest::split_box}>(set);
+            add_kind<Options{.depth_test = true}>(set);
             add_kind<Options{.slicing = Slicing::clusters}>(set);
-            add_kind<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
+            add_kind<Options{.depth_test = true, .slicing = Slicing::clusters}>(set);
             add_kind<Options{.slicing = Slicing::z_bins}>(set);
         }
 }
@@ -454,9 +419,8 @@ void add_boxes(const char* name, float median, std::span<const BoxFamily> famili
                                                 field(count, median, seed), spot_field(count, median, seed)};
             }};
         add_kind<Options{}>(set);
-        add_kind<Options{.footprint = Footprint::silhouette}>(set);
-        add_kind<Options{.depth_test = DepthTest::box}>(set);
-        add_kind<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
+        add_kind<Options{.depth_test = true}>(set);
+        add_kind<Options{.depth_test = true, .slicing = Slicing::clusters}>(set);
     }
 }
 
@@ -471,7 +435,7 @@ Lights away(std::size_t count, std::uint32_t seed) {
 /// A million small lights against ten thousand, a light.
 void add_scale() {
     const auto of = [](const Timed& row, const char* number) {
-        return row.to == "flat" && row.name == std::string("field4/") + number + "/32px/rectangle/none";
+        return row.to == "flat" && row.name == std::string("field4/") + number + "/32px/none";
     };
     const std::vector<Timed> all = results;
     for (const Timed& million : all)
@@ -485,7 +449,7 @@ void add_scale() {
 std::string usual_ratios() {
     std::string all;
     for (const Timed& r : results)
-        if (r.name.find("/4096/32px/rectangle/none") != std::string::npos && r.to == "flat" &&
+        if (r.name.find("/4096/32px/none") != std::string::npos && r.to == "flat" &&
             r.tier == to_string(lightbin::machine_isa()))
             all += text("%s %s %.2f (%.2f)", all.empty() ? "" : ",",
                         r.name.substr(0, r.name.find('/')).c_str(), r.ratio, r.spread);
@@ -539,7 +503,7 @@ int main(int argc, char** argv) try {
                           many_lights = {"many_lights", 100000, many_lights_frames};
     add_sources(field4);
     add_sources(field20);
-    add_sources<DepthTest::box>(field20);
+    add_sources<true>(field20);
     add_sources(many_lights);
     add_views(many_lights);
     add_views(field20);

@@ -32,7 +32,6 @@ public:
     }
 
     lightbin::Binner<options>& binner() { return binner_; }
-    const MadeBounds& made() const { return made_; }
     const lightbin::Slices& slices() const { return slices_; }
 
 private:

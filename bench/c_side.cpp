@@ -126,7 +126,6 @@ template <Options options> void measure(const char* name, std::size_t count, Kin
     lightbin_binner_options binner_options = {};
     binner_options.size = sizeof binner_options;
     binner_options.ids = options.ids == IdWidth::u16 ? LIGHTBIN_U16 : LIGHTBIN_U32;
-    binner_options.footprint = static_cast<std::int32_t>(options.footprint);
     binner_options.depth_test = static_cast<std::int32_t>(options.depth_test);
     binner_options.slicing = static_cast<std::int32_t>(options.slicing);
     lightbin_view* view = nullptr;
@@ -222,14 +221,13 @@ int main(int count, char** words) {
         measure<Options{}>("rectangles", lights, Kind::spheres, seconds);
         measure<Options{}>("rectangles", lights, Kind::spots, seconds);
         measure<Options{.ids = IdWidth::u16}>("rectangles with 16-bit ids", lights, Kind::spheres, seconds);
-        measure<Options{.footprint = Footprint::silhouette}>("silhouettes", lights, Kind::spheres, seconds);
-        measure<Options{.depth_test = DepthTest::box}>("box", lights, Kind::spheres, seconds);
-        measure<Options{.depth_test = DepthTest::box}>("box", lights, Kind::spots, seconds);
-        measure<Options{.depth_test = DepthTest::box}>("box", lights, Kind::boxes, seconds);
+        measure<Options{.depth_test = true}>("box", lights, Kind::spheres, seconds);
+        measure<Options{.depth_test = true}>("box", lights, Kind::spots, seconds);
+        measure<Options{.depth_test = true}>("box", lights, Kind::boxes, seconds);
         measure<Options{.slicing = Slicing::clusters}>("clusters", lights, Kind::spheres, seconds);
-        measure<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
+        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>(
             "clusters with box", lights, Kind::spots, seconds);
-        measure<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
+        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>(
             "clusters with box", lights, Kind::boxes, seconds);
         measure<Options{.slicing = Slicing::z_bins}>("z-bins", lights, Kind::spheres, seconds);
     }

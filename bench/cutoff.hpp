@@ -137,5 +137,5 @@ private:
     LightSet lights_;
     std::vector<float> intensity_, truth_;
     double white_ = 0;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = true}> binner_;
 };

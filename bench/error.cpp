@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 // What lists have beyond the exact set, and whether they miss any of it: every pair of a cell and a light decided in exact
-// arithmetic, of each method of the ladder and of clusters; of single spots by half angle; and of single boxes and balls
-// cut by boxes. Writes error.csv, spots_error.csv and boxes_error.csv.
+// arithmetic, of tiles without and with a depth test and of clusters; of single spots by half angle; and of single
+// boxes and balls cut by boxes. Writes error.csv, spots_error.csv and boxes_error.csv.
 //
 // Columns of the first, a row for each scene (all views of it together), tile size and method:
 //   misses          entries that the method must have and lacks, in `verdicts` pairs of a cell and a light: every pair there
 //                   is (by_rationals: questions left to the rationals; open: such about spots that no certificate was found
 //                   for)
-//   exact           pairs whose light meets the cell between its Z bounds, its gap left out
+//   exact           pairs whose light meets the cell between its Z bounds
 //   excess          entries / exact - 1
-//   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds; for
-//                   silhouettes, also what keeping some lights' rectangles adds. Not where there are spots
+//   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds. Not where
+//                   there are spots
+// The method `interval` is the papers' test, a light's depths against the tile's, by the flat loop (flat.hpp): of spots
+// the spheres of their range. As it rounds to nearest, its misses don't end the run.
 #include "arguments.hpp"
+#include "built.hpp"
 #include "console.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
-#include "ladder.hpp"
 #include "shapes_error.hpp"
 #include "tiled_view.hpp"
 
@@ -25,6 +27,15 @@
 namespace {
 
 using lightbin::Slicing;
+
+/// What tiles or clusters test of a light's depth.
+enum class Method { none, interval, box };
+constexpr Method methods[] = {Method::none, Method::interval, Method::box};
+
+const char* name_of(Method method) {
+    constexpr const char* names[] = {"none", "interval", "box"};
+    return names[static_cast<int>(method)];
+}
 
 /// A row of error.csv.
 struct Row {
@@ -52,9 +63,9 @@ struct Row {
             const std::span<const std::uint32_t> list = list_of(tile);
             entries += list.size();
             for_each_listed(truth.tiles[tile], list, [&](const Pair& pair, bool listed) {
-                exact += (pair.facts & (clusters ? in_cell : in_split)) != 0;
+                exact += (pair.facts & in_cell) != 0;
                 unrounded += keeps(pair.facts);
-                misses += !listed && (pair.facts & (clusters ? in_cell : must_be_met(method.depth_test)));
+                misses += !listed && (pair.facts & (clusters || method != Method::none ? in_cell : in_pyramid));
             });
         }
     }
@@ -62,11 +73,8 @@ struct Row {
 private:
     /// Whether the method has this pair when nothing is rounded. Clusters test a light's depths, at least.
     bool keeps(std::uint32_t facts) const {
-        constexpr std::uint32_t needed[] = {0, by_interval, by_box, by_split_box};
-        std::uint32_t depth = needed[static_cast<int>(method.depth_test)];
-        if (slicing == Slicing::clusters && depth == 0) depth = by_interval;
-        return (facts & depth) == depth &&
-               (method.footprint == Footprint::rectangle || (facts & in_pyramid) != 0);
+        if (method == Method::box) return (facts & by_box) != 0;
+        return (method == Method::none && slicing == Slicing::none) || (facts & by_interval) != 0;
     }
 };
 
@@ -75,22 +83,37 @@ struct Case {
     std::vector<SeenScene> views;
 };
 
+/// A build for each of the methods.
+std::vector<BuildLists> builders() {
+    const auto loop = std::make_shared<Flat<float>>();
+    const auto ranges = std::make_shared<std::vector<lightbin::ListRange>>();
+    const auto by_flat_loop = [=](const TiledView& view, const LightSet& lights) -> Built {
+        loop->build<true>(view.flat, std::get<Lights>(lights), view.min.data(), view.max.data());
+        ranges->clear();
+        for (std::size_t i = 0; i + 1 < loop->offsets.size(); ++i)
+            ranges->push_back({loop->offsets[i], loop->offsets[i + 1] - loop->offsets[i]});
+        return {.ranges = *ranges, .bytes = 0, .ids = loop->indices};
+    };
+    return {builder<lightbin::Options{}>(), by_flat_loop, builder<lightbin::Options{.depth_test = true}>()};
+}
+
 /// The rows of a case, a method each.
 std::vector<Row> rows_of(const Case& scene, int tile_size) {
     std::vector<Row> rows;
-    for (const Method& method : ladder)
+    for (const Method method : methods)
         rows.push_back({scene.name, scene.views.size(), tile_size, method, Slicing::none,
                         static_cast<bool>(scene.views[0].scene.spots)});
-    const std::vector<BuildLists> builders = ladder_builders();
+    const std::vector<BuildLists> builds = builders();
     for (const SeenScene& seen : scene.views) {
         const TiledView view(seen.scene, seen.picture, tile_size);
         const LightSet lights = seen.scene.light_set(0);
         ExactDecider decider(seen.scene.projection, seen.picture.size, tile_size);
         const ExactPairs truth =
             std::visit([&](const auto& any) { return decider.pairs(any, view.bounds()); }, lights);
-        for (std::size_t rung = 0; rung < rows.size(); ++rung) {
-            const Built built = builders[rung](view, lights);
-            rows[rung].add(truth, [&](std::size_t tile) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const bool own = methods[i] != Method::interval;
+            const Built built = builds[i](view, own ? lights : LightSet(seen.scene.lights(0)));
+            rows[i].add(truth, [&](std::size_t tile) {
                 return built.ids.subspan(built.ranges[tile].offset, built.ranges[tile].count);
             });
         }
@@ -99,14 +122,14 @@ std::vector<Row> rows_of(const Case& scene, int tile_size) {
 }
 
 /// Of a field of lights, a row with the slab of each slice and one with the box of each cell.
-template <DepthTest depth_test>
+template <bool depth_test>
 Row row_of_clusters(const std::string& name, const Lights& lights, ExactDecider& decider) {
     constexpr int tile_size = 64;
     const lightbin::Slices slices = cluster_slices();
     const lightbin::View view = made_view(tile_size);
     lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = Slicing::clusters}> binner;
     const auto grid = *binner.bin(view, lights, {.slices = slices});
-    Row row = {name, 1, tile_size, {Footprint::rectangle, depth_test}, Slicing::clusters, false};
+    Row row = {name, 1, tile_size, depth_test ? Method::box : Method::none, Slicing::clusters, false};
     for (int slice = 0; slice < slices.count(); ++slice)
         row.add(pairs_in(decider, view, slices, slice, lights), [&](std::size_t tile) {
             const int x = int(tile) % grid.tiles_x(), y = int(tile) / grid.tiles_x();
@@ -121,8 +144,8 @@ std::vector<Row> rows_of_clusters(bool quick) {
     for (const auto& [name, median] :
          {std::pair("field4", field4_median), {"field20", field20_median}, {"field200", field200_median}}) {
         const Lights lights = field(quick ? 500 : 4096, median, 1);
-        rows.push_back(row_of_clusters<DepthTest::none>(name, lights, decider));
-        rows.push_back(row_of_clusters<DepthTest::box>(name, lights, decider));
+        rows.push_back(row_of_clusters<false>(name, lights, decider));
+        rows.push_back(row_of_clusters<true>(name, lights, decider));
     }
     return rows;
 }
@@ -130,21 +153,18 @@ std::vector<Row> rows_of_clusters(bool quick) {
 void write(std::FILE* csv, const std::vector<Row>& rows) {
     const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     for (const Row& row : rows)
-        std::fprintf(csv, "%s,%zu,%d,%s,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f,%.6f\n", row.scene.c_str(),
-                     row.views, row.tile_size, to_string(row.method.footprint),
-                     to_string(row.method.depth_test), to_string(row.slicing), number(row.misses),
+        std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f,%.6f\n", row.scene.c_str(),
+                     row.views, row.tile_size, name_of(row.method), to_string(row.slicing), number(row.misses),
                      number(row.verdicts), number(row.by_rationals), number(row.open), number(row.entries),
                      number(row.exact), row.excess(), row.margin());
     std::fflush(csv);
 }
 
 /// The rows of one method, of all scenes and tile sizes or one.
-std::vector<Row> of_method(const std::vector<Row>& rows, std::size_t rung, int tile_size = 0) {
+std::vector<Row> of_method(const std::vector<Row>& rows, Method method, int tile_size = 0) {
     std::vector<Row> its = rows;
     std::erase_if(its, [&](const Row& row) {
-        return row.method.footprint != ladder[rung].footprint ||
-               row.method.depth_test != ladder[rung].depth_test ||
-               (tile_size != 0 && row.tile_size != tile_size);
+        return row.method != method || (tile_size != 0 && row.tile_size != tile_size);
     });
     return its;
 }
@@ -158,15 +178,15 @@ double median_excess(const std::vector<Row>& rows) {
 
 /// A row a method: the median of the scenes at each tile size, and the worst of all.
 std::vector<TableRow> table(const std::vector<Row>& rows, const std::vector<int>& tile_sizes) {
-    std::vector<TableRow> all = {{"footprint", "depth test"}};
+    std::vector<TableRow> all = {{"depth test"}};
     for (const int tile_size : tile_sizes)
         all[0].push_back(text("%d px", tile_size));
     all[0].push_back("worst");
-    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
-        TableRow row = {to_string(ladder[rung].footprint), to_string(ladder[rung].depth_test)};
+    for (const Method method : methods) {
+        TableRow row = {name_of(method)};
         for (const int tile_size : tile_sizes)
-            row.push_back(text("%.1f %%", median_excess(of_method(rows, rung, tile_size))));
-        const std::vector<Row> its = of_method(rows, rung);
+            row.push_back(text("%.1f %%", median_excess(of_method(rows, method, tile_size))));
+        const std::vector<Row> its = of_method(rows, method);
         const Row& worst = *std::ranges::max_element(its, {}, &Row::excess);
         row.push_back(
             text("%.1f %%, %s at %d px", 100 * worst.excess(), worst.scene.c_str(), worst.tile_size));
@@ -208,7 +228,7 @@ int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     const bool quick = arguments.take("--quick");
     std::FILE* const csv =
-        open_report("error.csv", "scene,views,tile_px,footprint,depth_test,slicing,misses,verdicts,"
+        open_report("error.csv", "scene,views,tile_px,depth_test,slicing,misses,verdicts,"
                                  "by_rationals,open,entries,exact,excess,margin");
     std::vector<int> tile_sizes = {8, 16, 32, 64};
     if (quick) tile_sizes = {32, 64};
@@ -247,21 +267,20 @@ int main(int argc, char** argv) try {
     double margin = 1;
     for (const std::vector<Row>& some : {rows, clusters})
         for (const Row& row : some) {
+            if (row.method == Method::interval) continue;
             misses += row.misses;
-            if (row.slicing == Slicing::none && row.method.footprint == Footprint::rectangle && !row.spots)
-                margin = std::max(margin, row.margin());  // of silhouettes it is also some rectangles
+            if (row.slicing == Slicing::none && !row.spots) margin = std::max(margin, row.margin());
         }
-    for (const Row& row : of_method(rows, 0))
+    for (const Row& row : of_method(rows, Method::none))
         verdicts += row.verdicts, open += row.open;
-    const auto half = [&](std::size_t rung) { return median_excess(of_method(rows, rung)); };
+    const auto half = [&](Method method) { return median_excess(of_method(rows, method)); };
     conclude({text("%llu entries missed, clusters counted in; %.2g pairs of a tile and a light were decided, "
                    "%llu left open.",
                    static_cast<unsigned long long>(misses), static_cast<double>(verdicts),
                    static_cast<unsigned long long>(open)),
               text("Listed beyond the exact set, in the median: without Z bounds %.0f %%, interval %.0f %%, "
-                   "box %.1f %%, "
-                   "split_box %.1f %%.",
-                   half(0), half(1), half(2), half(3)),
+                   "box %.1f %%.",
+                   half(Method::none), half(Method::interval), half(Method::box)),
               text("Rounding outward adds %.3f %% at most to rectangles' entries.", 100 * (margin - 1)),
               text("Whole spheres are listed %.1f to %.0f times as often as the spots in them, in the median "
                    "%.1f.",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere or the spot
-// meets the tile's cell, and of spheres whether each rung of the ladder would keep it if its numbers were never rounded.
+// meets the tile's cell, and of spheres whether each depth test would keep it if its numbers were never rounded.
 //
 // Decided in double precision where that proves the answer, else in rationals; of a spot, by a certificate.
 #pragma once
@@ -28,19 +28,11 @@
 
 /// What may be true of a tile and a light.
 enum Fact : std::uint32_t {
-    in_pyramid = 1,     ///< the light meets the tile's cell without Z bounds
-    in_cell = 2,        ///< ... between the tile's minimum and maximum depth
-    in_split = 4,       ///< ... and outside its gap: the exact set
-    by_interval = 8,    ///< the sphere's depths meet the tile's; this and the next two of spheres only
-    by_box = 16,        ///< it meets the view-space box around the cell
-    by_split_box = 32,  ///< it meets one of the boxes before and behind the gap
+    in_pyramid = 1,   ///< the light meets the tile's cell without Z bounds
+    in_cell = 2,      ///< ... between the tile's minimum and maximum depth: the exact set
+    by_interval = 4,  ///< the sphere's depths meet the tile's; this and the next of spheres only
+    by_box = 8,       ///< it meets the view-space box around the cell
 };
-
-/// Of pairs that a list by this test knows cells of, those that it must have.
-inline Fact must_be_met(lightbin::DepthTest test) {
-    constexpr Fact cell[] = {in_pyramid, in_cell, in_cell, in_split};
-    return cell[static_cast<int>(test)];
-}
 
 /// A light in whose rectangle, by exact arithmetic, a tile lies; a spot that meets the tile.
 struct Pair {
@@ -221,13 +213,8 @@ private:
                         const lightbin::ZBounds& bounds) {
         const float min = bounds.min[tile], max = bounds.max[tile];
         const Range whole = within_view(min, max);
-        if (!(min <= max) || empty(whole) || !meets(x, y, whole, spot)) return in_pyramid;
-        const bool gap = !bounds.gap_min.empty() && bounds.gap_min[tile] < bounds.gap_max[tile];
-        if (!gap) return in_pyramid | in_cell | in_split;
-        for (const Range& part :
-             {within_view(min, bounds.gap_min[tile]), within_view(bounds.gap_max[tile], max)})
-            if (!empty(part) && meets(x, y, part, spot)) return in_pyramid | in_cell | in_split;
-        return in_pyramid | in_cell;
+        const bool cell = min <= max && !empty(whole) && meets(x, y, whole, spot);
+        return in_pyramid | (cell ? +in_cell : 0);
     }
 
     std::uint32_t facts(const Ball& ball, int x, int y, std::size_t tile, const lightbin::ZBounds& bounds) {
@@ -242,17 +229,7 @@ private:
         const Range whole = within_view(min, max);
         if (empty(whole) || !meets_box(x, y, whole, ball)) return facts;
         facts |= by_box;
-        const bool cell = pyramid && meets(x, y, whole, ball);
-        if (cell) facts |= in_cell;
-        const bool gap = !bounds.gap_min.empty() && bounds.gap_min[tile] < bounds.gap_max[tile];
-        if (!gap) return facts | by_split_box | (cell ? +in_split : 0);
-        for (const Range& part :
-             {within_view(min, bounds.gap_min[tile]), within_view(bounds.gap_max[tile], max)}) {
-            if (empty(part) || !meets_box(x, y, part, ball)) continue;
-            facts |= by_split_box;
-            if (cell && meets(x, y, part, ball)) facts |= in_split;
-        }
-        return facts;
+        return pyramid && meets(x, y, whole, ball) ? facts | in_cell : facts;
     }
 
     /// Whether the ball meets the cell of tile (x, y) in this range.

@@ -60,23 +60,23 @@ constexpr Goal for_all(const char* group, const char* rows, double must, bool mo
 }
 
 inline constexpr Goal goals[] = {
-    goal(to_flat, "field20/MANY/32px/rectangle/none to flat", 0.16, 0, 0.48, 1.0),
-    goal(to_flat, "field20/(?:4096|10000)/32px/rectangle/none to flat", 0, 0.28),
-    goal(to_flat, "field20/1000/32px/rectangle/none to flat", 0, 0.38),
-    goal(to_flat, "field20/256/32px/rectangle/none to flat", 0, 0.51),
-    goal(to_flat, "field20/MANY/16px/rectangle/none to flat", 0.20, 0.33, 0.55, 1.0),
-    goal(to_flat, "field200/MANY/32px/rectangle/none to flat", 0.17, 0.36, 0.50, 1.0),
-    goal(to_flat, "(?!field|near)[^/]+/MANY/32px/rectangle/none to flat", 0.17, 0.36, 0.50, 1.0),
-    goal(to_flat, "field4/MANY/32px/rectangle/none to flat", 0.20, 0.42, 0.50, 1.0),
-    goal(to_flat, "field20/MANY/32px/rectangle/box to flat", 0.50, 0.60),
-    goal(to_flat, "near/MANY/32px/rectangle/none to flat", 0.25, 0.50),
+    goal(to_flat, "field20/MANY/32px/none to flat", 0.16, 0, 0.48, 1.0),
+    goal(to_flat, "field20/(?:4096|10000)/32px/none to flat", 0, 0.28),
+    goal(to_flat, "field20/1000/32px/none to flat", 0, 0.38),
+    goal(to_flat, "field20/256/32px/none to flat", 0, 0.51),
+    goal(to_flat, "field20/MANY/16px/none to flat", 0.20, 0.33, 0.55, 1.0),
+    goal(to_flat, "field200/MANY/32px/none to flat", 0.17, 0.36, 0.50, 1.0),
+    goal(to_flat, "(?!field|near)[^/]+/MANY/32px/none to flat", 0.17, 0.36, 0.50, 1.0),
+    goal(to_flat, "field4/MANY/32px/none to flat", 0.20, 0.42, 0.50, 1.0),
+    goal(to_flat, "field20/MANY/32px/box to flat", 0.50, 0.60),
+    goal(to_flat, "near/MANY/32px/none to flat", 0.25, 0.50),
 
-    for_all(of_scale, "field4/0/32px/rectangle/none to clearing", 2),
-    for_all(of_scale, "field20/1/32px/rectangle/none to clearing", 2),
-    for_all(of_scale, "field4-4k/256/16px/rectangle/none to flat", 0.6),
-    for_all(of_scale, "away/1000000/32px/rectangle/none to reading", 1.5),
-    for_all(of_scale, "field4/1000000/32px/rectangle/none to 10,000 lights", 1.5),
-    for_all(of_scale, "field20/100000/32px/rectangle/none/4 threads to one", 1.5, true),
+    for_all(of_scale, "field4/0/32px/none to clearing", 2),
+    for_all(of_scale, "field20/1/32px/none to clearing", 2),
+    for_all(of_scale, "field4-4k/256/16px/none to flat", 0.6),
+    for_all(of_scale, "away/1000000/32px/none to reading", 1.5),
+    for_all(of_scale, "field4/1000000/32px/none to 10,000 lights", 1.5),
+    for_all(of_scale, "field20/100000/32px/none/4 threads to one", 1.5, true),
 
     goal(clusters_to_flat, "slices/field20/256/clusters/(none|box) to flat", 1.4, 2),
     goal(clusters_to_flat, "slices/field20/1000/clusters/(none|box) to flat", 0.8, 1.1),
@@ -93,10 +93,9 @@ inline constexpr Goal goals[] = {
 
     for_all(spots_to_spheres, "spots/[^/]+/[0-9]+/(.*) to spheres", 1.5),
 
-    for_all(boxes_to_both, "boxes/(.*)/[0-9]+/rectangle/none/none to spheres", 1.5),
-    for_all(boxes_to_both, "boxes/(.*)/[0-9]+/silhouette/none/none to spheres", 2.0),
-    for_all(boxes_to_both, "boxes/boxes20/[0-9]+/rectangle/box/none to spots", 1.2),
-    for_all(boxes_to_both, "boxes/clipped20/[0-9]+/rectangle/box/none to spots", 1.7),
+    for_all(boxes_to_both, "boxes/(.*)/[0-9]+/none/none to spheres", 1.5),
+    for_all(boxes_to_both, "boxes/boxes20/[0-9]+/box/none to spots", 1.2),
+    for_all(boxes_to_both, "boxes/clipped20/[0-9]+/box/none to spots", 1.7),
 };
 
 /// All goals of a run and what was measured. A miss is one in the figures as they are printed.

@@ -107,14 +107,14 @@ inline std::vector<float> made_depth() {
 
 /// Z bounds of the made depth buffer, which all field sets have in common.
 struct MadeBounds {
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> min, max;
     lightbin::ZBounds bounds;
 
     explicit MadeBounds(int tile_size) {
         static const std::vector<float> depth = made_depth();
         const lightbin::View view = Lens().view(tile_size);
-        for (auto* side : {&min, &max, &gap_min, &gap_max})
+        for (auto* side : {&min, &max})
             side->resize(view.tile_count());
-        bounds = *lightbin::reduce_depth(view, {.depth = depth}, {min, max, gap_min, gap_max});
+        bounds = *lightbin::reduce_depth(view, {.depth = depth}, {min, max});
     }
 };

@@ -97,10 +97,10 @@ bool ours(const Way& way) {
     return way.ours && !way.variant;
 }
 bool with_bounds(const Way& way) {
-    return ours(way) && way.needs_bounds();
+    return ours(way) && way.needs_bounds;
 }
 bool without_bounds(const Way& way) {
-    return ours(way) && !way.needs_bounds();
+    return ours(way) && !way.needs_bounds;
 }
 
 /// A view of a scene on all tile sizes, and what its pixels need.
@@ -156,7 +156,7 @@ void time(std::vector<PreparedView>& views, const std::vector<Way>& ways, std::v
     for (std::uint32_t turn = 0; turn < (quick ? 12 : 100); ++turn) {
         PreparedView& view = views[turn % views.size()];
         std::map<Form, LightSet> sets;
-        std::map<std::pair<int, lightbin::DepthTest>, double> bounds;
+        std::map<int, double> bounds;
         for (std::size_t i = 0; i < ways.size(); ++i) {
             // The first finds no light in the cache: each one in turn.
             const std::size_t place = (turn + i) % ways.size();
@@ -165,13 +165,11 @@ void time(std::vector<PreparedView>& views, const std::vector<Way>& ways, std::v
             if (turn % 4 != 0 && times.build.back() > 4) continue;
             TiledView& tiled = view.tiled.of(way.tile_size);
             if (!sets.contains(way.form)) sets[way.form] = lights_of(view.seen.scene, way.form, turn + 1);
-            auto [known, is_new] = bounds.insert({{way.tile_size, way.bounds}, 0.0});
-            if (is_new && way.needs_bounds())
-                known->second =
-                    1e3 * tiled.reduce(view.seen.picture, way.bounds == lightbin::DepthTest::split_box);
+            if (way.needs_bounds && !bounds.contains(way.tile_size))
+                bounds[way.tile_size] = 1e3 * tiled.reduce(view.seen.picture);
             Built built;
             const double seconds_to_build = seconds([&] { built = way.build(tiled, sets[way.form]); });
-            times.bounds.push_back(known->second);
+            times.bounds.push_back(way.needs_bounds ? bounds[way.tile_size] : 0);
             times.build.push_back(1e3 * seconds_to_build);
             times.upload.push_back(upload_ms(built));
         }
@@ -191,7 +189,7 @@ std::vector<Ending> study_endings(const PreparedView& view) {
     CutoffStudy study(view.seen.scene);
     if (!(study.white() > 0)) return endings;
     const TiledView& tiled = view.tiled.of(16);
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> binner;
+    lightbin::Binner<lightbin::Options{.depth_test = true}> binner;
     for (int k = 4; k <= 1024; k *= quick ? 4 : 2) {
         std::vector<double> builds;
         for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -277,21 +275,17 @@ std::string sentence(const SceneReport& report) {
     const Result &best = report.best(ours), &bare = report.best(without_bounds);
     std::string s = report.name + ": " + words(best.way) +
                     text(", %.2f ms, %.2f times the evaluations needed; ", best.total, best.ratio);
-    if (best.way.needs_bounds())
+    if (best.way.needs_bounds)
         s += "without Z bounds " + words(bare.way) + ", " + more(bare, best);
     else {
         const Result& bounded = report.best(with_bounds, total_without_bounds);
         const double worth = bare.total - total_without_bounds(bounded);
-        if (bounded.way.needs_bounds() && worth >= 0.005)
+        if (bounded.way.needs_bounds && worth >= 0.005)
             s += words(bounded.way) +
                  text(" if Z bounds take under %.2f ms (%.2f here, on the CPU)", worth, bounded.bounds);
         else
             s += "Z bounds don't pay";
     }
-    const Result& outlined =
-        report.best([](const Way& way) { return std::string_view(way.method).ends_with("silhouettes"); });
-    s += "; silhouettes " +
-         (outlined.total * as_good < best.total ? "pay, " + more(outlined, best) : std::string("don't pay"));
     const auto whole = [](const Way& way) { return way.ours && way.form == Form::whole_spheres; };
     if (std::ranges::any_of(report.results, [&](const Result& r) { return whole(r.way); }))
         s += "; cones instead of whole spheres save " +

@@ -9,8 +9,8 @@
 #       names the expression matches, which it prints. Says how many goals are met and what is missed by most, where a
 #       wider instruction set is slower than a narrower one, and what threads gain. About 7 minutes, --quick half a
 #       minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv: a row for each case, instruction
-#       set and thing that it is a ratio to. The sets fieldN have a mean footprint of N tiles of 32 pixels; box and
-#       split_box are held against the baseline without Z; a ratio to one thread says how many times as fast several
+#       set and thing that it is a ratio to. The sets fieldN have a mean footprint of N tiles of 32 pixels; box is
+#       held against the baseline without Z; a ratio to one thread says how many times as fast several
 #       are; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations

@@ -41,7 +41,7 @@ inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) 
     return lights;
 }
 
-/// Medians at which the silhouette of a light in view covers 4, 11, 20, 200 tiles of 32 pixels in the mean.
+/// Medians at which a light in view covers, seen as a disc, 4, 11, 20, 200 tiles of 32 pixels in the mean.
 inline constexpr float field4_median = 1.72f, field11_median = 4.1f, field20_median = 6.1154f, field200_median = 27.9f;
 
 /// "near": eye inside and beside lights. z in -3..30, |x| <= 3 + 1.2 |z|, |y| <= 3 + 0.8 |z|, radius

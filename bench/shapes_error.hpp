@@ -38,19 +38,18 @@ inline lightbin::View made_view(int tile_size) {
     return *lightbin::View::from_projection(glm::mat4(Lens().projection()), Lens().screen, {.tile_size = tile_size});
 }
 
-/// Depths of each tile, drawn among those that a sphere around a light can meet: 6 % deep, the middle third a gap.
+/// Depths of each tile, drawn among those that a sphere around a light can meet: 6 % deep.
 struct DrawnBounds {
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> min, max;
 
     DrawnBounds(std::size_t count, const lightbin::Sphere& around, Dice& dice) {
         const float first = (-around.z - around.radius) / 1.06f, last = -around.z + around.radius;
         for (std::size_t tile = 0; tile < count; ++tile) {
             const float from = dice.between(first, last);
-            min.push_back(from), gap_min.push_back(from * 1.02f);
-            gap_max.push_back(from * 1.04f), max.push_back(from * 1.06f);
+            min.push_back(from), max.push_back(from * 1.06f);
         }
     }
-    lightbin::ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
+    lightbin::ZBounds bounds() const { return {min, max}; }
 };
 
 using AnyLight = std::variant<lightbin::Sphere, lightbin::Spot, lightbin::Box>;
@@ -87,17 +86,14 @@ template <lightbin::Options options> ShapeMethod shape_method(const char* name, 
 }
 
 inline std::vector<ShapeMethod> shape_methods() {
-    using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
-    constexpr Options silhouette = {.footprint = Footprint::silhouette}, interval = {.depth_test = DepthTest::interval},
-                      box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box},
-                      both = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box},
-                      slabs = {.slicing = Slicing::clusters},
-                      boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters};
+    using lightbin::Options, lightbin::Slicing;
+    constexpr Options box = {.depth_test = true}, slabs = {.slicing = Slicing::clusters},
+                      boxes = {.depth_test = true, .slicing = Slicing::clusters};
     return {
-        shape_method<Options{}>("rectangle", in_pyramid), shape_method<silhouette>("silhouette", in_pyramid),
-        shape_method<interval>("interval", in_cell),      shape_method<box>("box", in_cell),
-        shape_method<both>("silhouette box", in_cell),    shape_method<split_box>("split_box", in_split),
-        shape_method<slabs>("clusters", in_cell),         shape_method<boxes>("clusters box", in_cell),
+        shape_method<Options{}>("rectangle", in_pyramid),
+        shape_method<box>("box", in_cell),
+        shape_method<slabs>("clusters", in_cell),
+        shape_method<boxes>("clusters box", in_cell),
     };
 }
 
@@ -268,10 +264,8 @@ inline ShapeErrors measure_boxes(std::size_t boxes) {
         for (const lightbin::Box& box : boxes_of(family, boxes, ++seed))
             families.back().lights.push_back({bounding_sphere(box), box});
     }
-    std::vector<ShapeMethod> methods = shape_methods();
-    std::erase_if(methods, [](const ShapeMethod& method) { return method.exact == in_split; });
     return measure_shapes(
-        "boxes_error.csv", "method,family,boxes,exact,sphere,box", "family", methods, families, 300,
+        "boxes_error.csv", "method,family,boxes,exact,sphere,box", "family", shape_methods(), families, 300,
         [&](const AnyLight& any, const lightbin::ZBounds& bounds) {
             const lightbin::Box& box = std::get<lightbin::Box>(any);
             oracle::BoxLight light = {box.x, box.y,    box.z, box.radius, {box.box_x, box.box_y, box.box_z},

@@ -32,7 +32,7 @@ inline SeenScene see(BenchScene scene) {
 struct TiledView {
     lightbin::View view;
     FlatView flat;
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> min, max;
     std::vector<std::uint32_t> drawn;  ///< pixels a tile that show something
     std::uint64_t all_drawn = 0;
     double reduce_seconds = 0;          ///< what making minimum and maximum takes
@@ -41,22 +41,19 @@ struct TiledView {
     TiledView(const BenchScene& scene, const Picture& picture, int tile_size)
         : view(*lightbin::View::from_projection(scene.projection, picture.size, {.tile_size = tile_size})),
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
-          max(min), gap_min(min), gap_max(min), drawn(view.tile_count()),
+          max(min), drawn(view.tile_count()),
           clusters(cluster_slices(reach_of(scene))), z_bins(z_bin_slices(reach_of(scene))) {
-        (void)reduce(picture, true);
         std::vector<double> times;
         for (int turn = 0; turn < 5; ++turn)
-            times.push_back(reduce(picture, false));
+            times.push_back(reduce(picture));
         reduce_seconds = median(times);
         count_drawn(picture);
     }
 
-    /// Makes minimum and maximum anew, or the gap too, and returns what it took.
-    double reduce(const Picture& picture, bool with_gap) {
-        lightbin::ZBoundsBuffers to = {.min = min, .max = max};
-        if (with_gap) to.gap_min = gap_min, to.gap_max = gap_max;
+    /// Makes minimum and maximum anew, and returns what it took.
+    double reduce(const Picture& picture) {
         return seconds([&] {
-            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, to))
+            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, {min, max}))
                 std::abort();
         });
     }
@@ -74,7 +71,7 @@ struct TiledView {
         return all_evaluations(lists) / static_cast<double>(all_drawn);
     }
 
-    lightbin::ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
+    lightbin::ZBounds bounds() const { return {min, max}; }
 
 private:
     void count_drawn(const Picture& picture) {

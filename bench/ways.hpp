@@ -22,13 +22,11 @@ enum class Form { as_they_are, least_spheres, whole_spheres };
 struct Way {
     const char* method;
     int tile_size;
-    lightbin::DepthTest bounds;  ///< the Z bounds that are made for it first
-    bool ours;                   ///< or as engines do it
-    bool variant;                ///< of another, to tell what a part of it pays; in no table
+    bool needs_bounds;  ///< Z bounds are made for it first
+    bool ours;          ///< or as engines do it
+    bool variant;       ///< of another, to tell what a part of it pays; in no table
     Form form;
     BuildLists build;
-
-    bool needs_bounds() const { return bounds != lightbin::DepthTest::none; }
 };
 
 inline LightSet lights_of(const BenchScene& scene, Form form, std::uint32_t seed) {
@@ -40,24 +38,14 @@ class Ways {
 public:
     /// Of scenes with spots also those of spheres around them.
     static std::vector<Way> all(bool with_spots) {
-        using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
-        constexpr Options box = {.depth_test = DepthTest::box},
-                          boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters};
-        constexpr auto with_silhouettes = [](Options options) {
-            options.footprint = Footprint::silhouette;
-            return options;
-        };
+        using lightbin::Options, lightbin::Slicing;
+        constexpr Options box = {.depth_test = true}, boxes = {.depth_test = true, .slicing = Slicing::clusters};
         Ways ways;
         ways.add<Options{}>("plain");
-        ways.add<with_silhouettes({})>("silhouette");
-        ways.add<Options{.depth_test = DepthTest::interval}>("interval");
         ways.add<box>("box");
-        ways.add<Options{.depth_test = DepthTest::split_box}>("split_box");
         ways.add<Options{.slicing = Slicing::clusters}>("clusters");
         ways.add<boxes>("clusters+box");
         ways.add<Options{.slicing = Slicing::z_bins}>("z-bins");
-        ways.add<with_silhouettes(box)>("box+silhouettes", true);
-        ways.add<with_silhouettes(boxes)>("clusters+box+silhouettes", true);
         if (with_spots) {
             ways.add<box>("box of least spheres", true, Form::least_spheres);
             ways.add<box>("box of whole spheres", true, Form::whole_spheres);
@@ -77,8 +65,8 @@ private:
         constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
         for (const int tile_size : {8, 16, 32, 64})
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
-                all_.push_back({method, tile_size, clusters ? lightbin::DepthTest::none : options.depth_test,
-                                true, variant, form, builder<options>()});
+                all_.push_back({method, tile_size, options.depth_test && !clusters, true, variant, form,
+                                builder<options>()});
     }
 
     template <class Loop, bool with_bounds> void add_engines(const char* method) {
@@ -86,8 +74,7 @@ private:
         const auto ranges = std::make_shared<std::vector<lightbin::ListRange>>();
         for (const int tile_size : {8, 16, 32, 64})
             all_.push_back(
-                {method, tile_size, with_bounds ? lightbin::DepthTest::interval : lightbin::DepthTest::none,
-                 false, false, Form::whole_spheres,
+                {method, tile_size, with_bounds, false, false, Form::whole_spheres,
                  [=](const TiledView& view, const LightSet& lights) -> Built {
                      loop->template build<with_bounds>(view.flat, std::get<Lights>(lights), view.min.data(),
                                                        view.max.data());

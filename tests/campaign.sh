@@ -64,9 +64,9 @@ spots() {
         echo "Made by \`sh tests/campaign.sh spots $1\` on $(date -u +%Y-%m-%d), at commit $(git rev-parse --short HEAD)," \
             "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)."
         echo
-        echo "Spots in view and world space, random, at the eye, huge, touching and of any bits, in rectangles and silhouettes,"
-        echo "\`interval\`, \`box\`, \`split_box\`, clusters and z-bins. A verdict says that a spot does not meet a cell whose list lacks it,"
-        echo "though the ball of its range may reach the tile. By certificates: where the ball alone does not tell."
+        echo "Spots in view and world space, random, at the eye, huge, touching and of any bits, in tiles without and"
+        echo "with a depth test, clusters and z-bins. A verdict says that a spot does not meet a cell whose list lacks"
+        echo "it, though the ball of its range may reach the tile. By certificates: where the ball alone does not tell."
         echo
         echo "| build | verdicts | by certificates | left open | misses |"
         echo "| --- | --- | --- | --- | --- |"
@@ -194,10 +194,9 @@ table() {
     echo
     echo "$(wc -l <$work/1_gcc_O2.txt) families, $lights lights each with g++ -O2 and $others in the other builds."
     echo
-    echo "A case is a light in the lists of one of the eight rungs (rectangle or silhouette; no depth test, interval, box,"
-    echo "split box). In each, every instruction set of the machine gave the scalar tier's bytes, and so did a run"
-    echo "on the caller's threads. A proof says that a sphere does not meet a block of tiles that lack it; those that double"
-    echo "precision could not give were decided in rationals. Under FTZ and DAZ an input that is denormal counts as the 0"
+    echo "A case is a light in the lists without or with a depth test. In each, every instruction set of the machine gave"
+    echo "the scalar tier's bytes, and so did a run on the caller's threads. A proof says that a sphere does not meet"
+    echo "a block of tiles that lack it; those that double precision could not give were decided in rationals. Under FTZ and DAZ an input that is denormal counts as the 0"
     echo "that the processor takes it for. With -ffast-math the header refuses to compile (g++, clang 14, clang 19)."
     echo
     echo "| build | cases | proofs | in rationals | misses | other complaints |"

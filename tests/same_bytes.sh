@@ -1,8 +1,8 @@
 #!/bin/sh
 # sh tests/same_bytes.sh [COMMIT] [--inputs N]: whether the library gives the same light lists as at a COMMIT (HEAD
-# if not named): of N random inputs (20,000) of all families, with each footprint and depth test, on all tiers of
-# this machine, with ids of 16 and 32 bits, on one thread and on several. Says which inputs differ. A version is
-# built and run in build/same_bytes; what a commit gave is kept there. Takes some minutes.
+# if not named): of N random inputs (20,000) of all families, with and without depth test, in tiles, clusters and
+# z-bins, on all tiers of this machine, with ids of 16 and 32 bits, on one thread and on several. Says which inputs
+# differ. A version is built and run in build/same_bytes; what a commit gave is kept there. Takes some minutes.
 set -eu
 me=tests/same_bytes.sh
 cd "$(dirname "$0")/.."
@@ -32,23 +32,22 @@ work=build/same_bytes
 make_build_folder
 mkdir -p $work
 
-# build FOLDER PROGRAM: the tests' engine in FOLDER with the library there, and the lines of this working tree's
-# hash.cpp.
+# build FOLDER PROGRAM: this working tree's engine and hash.cpp with the library in FOLDER.
 build() {
-    "$compiler" -std=c++20 -O2 -DORACLE_EVERY_WAY -I"$1/include" -c "$1/tests/oracle/engine.cpp" -o "$2.engine.o"
-    # From standard input, so that it does not include the headers that lie beside it.
-    "$compiler" -std=c++20 -O2 -I"$1/include" -I"$1/tests/oracle" -x c++ -c - -o "$2.hash.o" <tests/oracle/hash.cpp
+    for part in engine hash; do
+        "$compiler" -std=c++20 -O2 -DORACLE_EVERY_WAY -I"$1/include" -c tests/oracle/$part.cpp -o "$2.$part.o"
+    done
     "$compiler" "$2.engine.o" "$2.hash.o" -o "$2"
 }
 
-# The same lines were made with the same inputs: those of hash.cpp and of the families. They are numbered from 0.
-kind=$(cat tests/oracle/hash.cpp tests/oracle/*.hpp | cksum | cut -d ' ' -f 1)
+# The same lines were made with the same inputs. They are numbered from 0.
+kind=$(cat tests/oracle/hash.cpp tests/oracle/engine.cpp tests/oracle/*.hpp | cksum | cut -d ' ' -f 1)
 before=$work/$name.$kind
 if [ ! -s "$before" ] || [ "$(tail -n 1 "$before" | cut -d ' ' -f 1)" -lt $((inputs - 1)) ]; then
     echo "$me: building $(git log -1 --format='%h %s' "$name")"
     rm -rf $work/old
     mkdir $work/old
-    git archive "$name" include tests bench | tar -x -C $work/old
+    git archive "$name" include | tar -x -C $work/old
     build $work/old $work/hash_old
     echo "$me: running it"
     $work/hash_old "$inputs" >"$before.part"

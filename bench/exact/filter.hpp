@@ -110,13 +110,8 @@ public:
         return std::nullopt;
     }
 
-    /// The squared distance of the ball's centre from a tile's cell, give or take 2^-48 of the sizes involved.
-    double cell_distance2(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
-        double at = 0;
-        return nearest({{{column(x), column(x + 1)}, {row(y), row(y + 1)}}}, depths, ball, at);
-    }
-
-    /// The same from the wedge of a whole column or row of tiles.
+    /// The squared distance of the ball's centre from the wedge of a whole column or row of tiles, give or take 2^-48
+    /// of the sizes involved.
     double column_distance2(int x, const FlatDepths& depths, const FlatBall& ball) {
         double at = 0;
         return nearest(wedge(0, {column(x), column(x + 1)}), depths, ball, at);

@@ -18,7 +18,7 @@ lightbin::Slices slices_of(const Stage& stage) {
 Technique clustered_forward() {
     using lightbin::Slicing;
     const auto binner = std::make_shared<lightbin::Binner<lightbin::Options{
-        .depth_test = lightbin::DepthTest::box, .slicing = Slicing::clusters}>>();
+        .depth_test = true, .slicing = Slicing::clusters}>>();
     return {"ClusteredForward", [binner](Stage& stage) {
                 const auto slices = slices_of(stage);
                 const auto grid = value_of(binner->bin(stage.view(), stage.lights(), {.slices = slices}));

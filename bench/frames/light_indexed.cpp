@@ -15,7 +15,7 @@
 Technique light_indexed(int id_bits) {
     struct Memory {
         DepthBounds bounds;
-        lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+        IntervalLists lists;
         std::vector<std::byte> encoded;
     };
     const auto memory = std::make_shared<Memory>();
@@ -31,8 +31,7 @@ Technique light_indexed(int id_bits) {
                 begin_picture(stage);
                 depth_pre_pass(stage);
                 const auto bounds = memory->bounds.reduce_on_gpu(stage, stage.depth());
-                const auto grid =
-                    value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+                const auto grid = memory->lists.bin(stage, bounds);
                 memory->encoded.resize(lightbin::encoded_bytes(format, grid.ranges().size(), 0));
                 value_of(lightbin::encode(grid, format, memory->encoded));
                 stage.lap("bin");

@@ -7,6 +7,7 @@
 #include <lightbin/shader_reduce.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -91,14 +92,13 @@ lightbin::ZBounds DepthBounds::reduce_on_cpu(Stage& stage) {
     const lightbin::View view = stage.view();
     const auto [width, height] = view.viewport();
     depth_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    for (auto* side : {&min_, &max_, &transparent_max_})
+    for (auto* side : {&min_, &max_})
         side->resize(view.tile_count());
     stage.memory.draw_to({}, stage.depth());
     glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
     stage.lap("read back");
-    const auto bounds =
-        value_of(lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true},
-                                        {.min = min_, .max = max_, .transparent_max = transparent_max_}));
+    const auto bounds = value_of(
+        lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true}, {.min = min_, .max = max_}));
     stage.lap("reduce");
     return bounds;
 }
@@ -122,15 +122,33 @@ lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool ba
 
     depth_.resize(2 * view.tile_count());
     glReadPixels(0, 0, view.tiles_x(), view.tiles_y(), GL_RG, GL_FLOAT, depth_.data());
-    std::vector<float>& max = background ? transparent_max_ : max_;
     min_.resize(view.tile_count());
-    max.resize(view.tile_count());
+    max_.resize(view.tile_count());
     for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
-        if (!background) min_[tile] = depth_[2 * tile];
-        max[tile] = depth_[2 * tile + 1];
+        min_[tile] = depth_[2 * tile];
+        max_[tile] = depth_[2 * tile + 1];
     }
     stage.lap("read back");
-    return {.min = min_, .max = max_, .transparent_max = transparent_max_, .background_skipped = true};
+    return {.min = min_, .max = max_};
+}
+
+lightbin::LightGrid<std::uint32_t> IntervalLists::bin(Stage& stage, const lightbin::ZBounds& bounds) {
+    const auto& lights = stage.lights();
+    const auto grid = value_of(binner_.bin(stage.view(), lights));
+    ranges_.clear();
+    ids_.clear();
+    for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile) {
+        const double min = bounds.min.empty() ? -HUGE_VAL : static_cast<double>(bounds.min[tile]),
+                     max = bounds.max.empty() ? HUGE_VAL : static_cast<double>(bounds.max[tile]);
+        const lightbin::ListRange all = grid.ranges()[tile];
+        const auto offset = static_cast<std::uint32_t>(ids_.size());
+        for (const std::uint32_t id : grid.ids().subspan(all.offset, all.count)) {
+            const double z = static_cast<double>(lights[id].z), radius = static_cast<double>(lights[id].radius);
+            if (min <= max && radius - z >= min && -radius - z <= max) ids_.push_back(id);
+        }
+        ranges_.push_back({offset, static_cast<std::uint32_t>(ids_.size()) - offset});
+    }
+    return {grid.tiles_x(), grid.tiles_y(), ranges_, ids_, grid.light_counts()};
 }
 
 void upload_lists(Stage& stage, const lightbin::LightGrid<std::uint32_t>& grid) {

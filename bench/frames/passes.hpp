@@ -39,7 +39,19 @@ public:
     lightbin::ZBounds reduce_on_gpu(Stage& stage, GLuint depth, bool background = false);
 
 private:
-    std::vector<float> depth_, min_, max_, transparent_max_;
+    std::vector<float> depth_, min_, max_;
+};
+
+/// Lists by the papers' depth test: of a tile's lights those whose depths, from nearest to farthest, meet its Z bounds.
+class IntervalLists {
+public:
+    /// Valid until the next call.
+    lightbin::LightGrid<std::uint32_t> bin(Stage& stage, const lightbin::ZBounds& bounds);
+
+private:
+    lightbin::Binner<> binner_;
+    std::vector<lightbin::ListRange> ranges_;
+    std::vector<std::uint32_t> ids_;
 };
 
 /// The lists, for the shaders of listed_lights().

@@ -9,7 +9,7 @@
 Technique tiled_deferred(int g_buffer_bits) {
     struct Memory {
         DepthBounds bounds;
-        lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+        IntervalLists lists;
     };
     const auto memory = std::make_shared<Memory>();
     return {.name = "TiledDeferred",
@@ -17,8 +17,7 @@ Technique tiled_deferred(int g_buffer_bits) {
                 [memory](Stage& stage) {
                     fill_g_buffer(stage, stage.depth());
                     const auto bounds = memory->bounds.reduce_on_gpu(stage, stage.depth());
-                    const auto grid =
-                        value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+                    const auto grid = memory->lists.bin(stage, bounds);
                     stage.lap("bin");
                     upload_lists(stage, grid);
                     shade_deferred(stage, listed_lights());

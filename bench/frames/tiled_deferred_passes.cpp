@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -18,8 +19,11 @@ void reduce(Stage& stage) {
     const GLuint program =
         stage.use_compute("#version 430 core\n" + value_of(lightbin::reduce_shader(options)).text);
     set_reduction(stage, program, stage.depth());
+    std::vector<lightbin::ShaderEdges> bounds(view.tile_count());  // the shader writes these
+    const std::vector<lightbin::ShaderEdges> edges = lightbin::shader_edges(view);
+    bounds.insert(bounds.end(), edges.begin(), edges.end());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(options.z_bounds.binding),
-                     stage.memory.buffer("z_bounds", 8 * view.tile_count(), nullptr));
+                     stage.memory.buffer("z_bounds", bounds));
     glDispatchCompute(static_cast<GLuint>(view.tiles_x()), static_cast<GLuint>(view.tiles_y()), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     stage.lap("reduce");
@@ -29,7 +33,7 @@ void reduce(Stage& stage) {
 
 Technique tiled_deferred_passes(int g_buffer_bits) {
     const auto lists =
-        std::make_shared<GpuLists>(lightbin::CullShaderOptions{.depth_test = lightbin::DepthTest::interval});
+        std::make_shared<GpuLists>(lightbin::CullShaderOptions{.depth_test = true});
     return {.name = "TiledDeferred by passes",
             .draw =
                 [lists](Stage& stage) {

@@ -8,11 +8,18 @@
 
 namespace {
 
-template <lightbin::DepthTest depth_test>
+struct BoxLists {
+    auto bin(Stage& stage, const lightbin::ZBounds& bounds) {
+        return value_of(binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+    }
+    lightbin::Binner<lightbin::Options{.depth_test = true}> binner;
+};
+
+template <class Lists>
 Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
     struct Memory {
         DepthBounds bounds;
-        lightbin::Binner<lightbin::Options{.depth_test = depth_test}> binner;
+        Lists lists;
     };
     const auto memory = std::make_shared<Memory>();
     return {name, [=](Stage& stage) {
@@ -24,8 +31,7 @@ Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
                                                          : memory->bounds.reduce_on_cpu(stage);
                 if (ends == ZEnds::min) bounds.max = {};
                 if (ends == ZEnds::max) bounds.min = {};
-                const auto grid =
-                    value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+                const auto grid = memory->lists.bin(stage, bounds);
                 stage.lap("bin");
                 upload_lists(stage, grid);
                 shade_forward(stage, listed_lights());
@@ -37,14 +43,13 @@ Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
 
 Technique tiled_forward_pre_z(ZEnds ends, Reduction reduction) {
     static constexpr const char* names[] = {"", " min", " max", " both"};
-    Technique made = pre_z<lightbin::DepthTest::interval>(std::string("TiledForward-PreZ") +
-                                                              names[static_cast<int>(ends)] +
-                                                              (reduction == Reduction::gpu ? " (GPU)" : ""),
-                                                          ends, reduction);
+    Technique made = pre_z<IntervalLists>(std::string("TiledForward-PreZ") + names[static_cast<int>(ends)] +
+                                              (reduction == Reduction::gpu ? " (GPU)" : ""),
+                                          ends, reduction);
     made.multisampled = ends == ZEnds::none || reduction == Reduction::gpu;
     return made;
 }
 
 Technique tiled_forward_box() {
-    return pre_z<lightbin::DepthTest::box>("TiledForward-PreZ box (GPU)", ZEnds::both, Reduction::gpu);
+    return pre_z<BoxLists>("TiledForward-PreZ box (GPU)", ZEnds::both, Reduction::gpu);
 }

@@ -4,6 +4,8 @@
 #include "passes.hpp"
 #include "technique.hpp"
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -21,26 +23,17 @@ std::span<const float> nearest_panes(Stage& stage, DepthBounds& bounds) {
 }
 
 struct Memory {
-    DepthBounds opaque, panes;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner, pane_binner;
+    DepthBounds opaque, all, panes;
+    IntervalLists opaque_lists, pane_lists;
 };
 
-lightbin::TransparencyGrids<std::uint32_t> bin(Stage& stage, Memory& memory, TransparentLists lists) {
-    const lightbin::View view = stage.view();
-    const auto& lights = stage.lights();
-    memory.opaque.reduce_on_gpu(stage, stage.depth(), true);
-    const auto bounds = memory.opaque.reduce_on_gpu(stage, stage.depth());
-    if (lists == TransparentLists::max_only)
-        return value_of(memory.binner.bin_transparency(view, lights, {.bounds = bounds}));
-    if (lists == TransparentLists::shared) {
-        const auto grid =
-            value_of(memory.binner.bin(view, lights, {.bounds = {.max = bounds.transparent_max}}));
-        return {grid, grid};
-    }
-    const std::span<const float> nearest = nearest_panes(stage, memory.panes);
-    return {value_of(memory.binner.bin(view, lights, {.bounds = bounds})),
-            value_of(memory.pane_binner.bin(view, lights,
-                                            {.bounds = {.min = nearest, .max = bounds.transparent_max}}))};
+/// The grids of the opaque surfaces and of the panes.
+std::array<lightbin::LightGrid<std::uint32_t>, 2> bin(Stage& stage, Memory& memory, TransparentLists lists) {
+    lightbin::ZBounds of_panes = {.max = memory.all.reduce_on_gpu(stage, stage.depth(), true).max};
+    if (lists == TransparentLists::own_min) of_panes.min = nearest_panes(stage, memory.panes);
+    const auto panes = memory.pane_lists.bin(stage, of_panes);
+    if (lists == TransparentLists::shared) return {panes, panes};
+    return {memory.opaque_lists.bin(stage, memory.opaque.reduce_on_gpu(stage, stage.depth())), panes};
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 
 namespace {
 
-using lightbin::DepthTest;
 using lightbin::Options;
 using lightbin::Slicing;
 
@@ -43,12 +42,9 @@ public:
         // Where a build takes seconds, one of each will do.
         if (device_.is_software() && source.frames.front().lights.size() >= 100000) source.frames.resize(1);
         measure_tiles(source);
-        if (with_bounds) {
-            measure_one<Options{.depth_test = DepthTest::interval}>(source, "interval, 16 px", 16);
-            measure_one<Options{.depth_test = DepthTest::box}>(source, "box, 16 px", 16);
-        }
+        if (with_bounds) measure_one<Options{.depth_test = true}>(source, "box, 16 px", 16);
         measure_one<Options{.slicing = Slicing::clusters}>(source, "clusters, 64 px", 64);
-        measure_one<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
+        measure_one<Options{.depth_test = true, .slicing = Slicing::clusters}>(
             source, "clusters+box, 64 px", 64);
     }
 
@@ -58,9 +54,9 @@ private:
         const std::size_t lights = source.frames.front().lights.size();
         progress_(device_.name() + ", " + source.name + ", " + counted(lights) + ", " + method);
         try {
-            const bool bounded = options.depth_test != DepthTest::none && options.slicing == Slicing::none;
+            const bool bounded = options.depth_test && options.slicing == Slicing::none;
             const MadeBounds* const made = bounded ? &made_ : nullptr;
-            const bool plain = options.depth_test == DepthTest::none && options.slicing == Slicing::none;
+            const bool plain = !options.depth_test && options.slicing == Slicing::none;
             GpuRow row =
                 measure<options>(device_, source, tile_size, turns_, cluster_slices(source.reach),
                                  made ? made->bounds : lightbin::ZBounds{}, plain && lights <= 10000);

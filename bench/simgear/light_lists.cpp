@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The file in C++20. It leaves out what light_lists.hpp does not ask for: docs/c.md has a table of what that saves.
 #define LIGHTBIN_NO_BOXES
-#define LIGHTBIN_NO_SILHOUETTES
 #define LIGHTBIN_NO_U16
-#define LIGHTBIN_NO_INTERVAL
-#define LIGHTBIN_NO_SPLIT_BOX
 #define LIGHTBIN_NO_Z_BINS
-#define LIGHTBIN_NO_TRANSPARENCY
-#define LIGHTBIN_NO_BITS
 #define LIGHTBIN_NO_COVERAGE
 #define LIGHTBIN_NO_BUDGETS
 #define LIGHTBIN_NO_SHADERS

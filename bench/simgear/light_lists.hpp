@@ -24,7 +24,7 @@ public:
         lightbin_binner_options options = {};
         options.size = sizeof options;
         options.slicing = LIGHTBIN_CLUSTERS;
-        options.depth_test = LIGHTBIN_BOX;
+        options.depth_test = 1;
         lightbin_binner* binner = nullptr;
         succeed(lightbin_binner_create(&options, &binner));
         binner_.reset(binner);

@@ -15,8 +15,6 @@
 #include <utility>
 #include <vector>
 
-using lightbin::DepthTest;
-using lightbin::Footprint;
 using lightbin::Slicing;
 using lightbin::Verdict;
 
@@ -47,7 +45,7 @@ Way with(Way way, bool Way::*part, bool value) {
     return way;
 }
 
-// Every part of a way; one twice, side by side, where it can be had in two ways, of which the cheaper counts.
+// Every part of a way.
 std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const WayCosts& costs) {
     std::vector<Part> parts;
     const auto add_switch = [&](const char* name, bool Way::*part, const std::string& on, const char* off) {
@@ -60,27 +58,11 @@ std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const
         const auto take = [&](const lightbin::Plan& plan) {
             part.other.plan = plan;
             part.verdict.instead = to_string(plan);
-            part.by_itself = plan.tiled && (plan.footprint != way.plan.footprint) +
-                                                   (plan.depth_test != way.plan.depth_test) +
-                                                   (plan.slicing != way.plan.slicing) ==
-                                               1;
+            part.by_itself = plan.tiled && (plan.depth_test != way.plan.depth_test) !=
+                                               (plan.slicing != way.plan.slicing);
         };
         if (!verdict.instead.empty()) take(verdict.other);
         if (!way.plan.has_z_bounds()) part.other.minimum = part.other.maximum = true;
-        // lightbin::advise() doesn't weigh silhouettes with everything: the same plan but for them, and the other plan
-        // with the same footprint.
-        lightbin::Plan same = part.other.plan;
-        if (verdict.part == "silhouettes") {
-            same = way.plan;
-            same.footprint = verdict.keep ? Footprint::rectangle : Footprint::silhouette;
-            if (same.tiled && costs.can_measure(same)) take(same);
-        } else if (same.tiled && same.footprint != way.plan.footprint) {
-            same.footprint = way.plan.footprint;
-            if (costs.can_measure(same)) {
-                parts.push_back(part);
-                take(same);
-            }
-        }
         parts.push_back(part);
         if (verdict.part != "pre-pass") continue;
 
@@ -121,16 +103,13 @@ Found find(WayCosts& costs) {
     found.way.plan = advice.best();
     const auto plain =
         std::find_if(advice.plans().begin(), advice.plans().end(), [](const lightbin::Plan& plan) {
-            return plan.tiled && plan.footprint == Footprint::rectangle &&
-                   plan.depth_test == DepthTest::none && plan.slicing == Slicing::none;
+            return plan.tiled && !plan.depth_test && plan.slicing == Slicing::none;
         });
     found.plain_plan = *plain;
     for (int round = 1;; ++round) {
         found.parts = parts_of(found.way, advice, costs);
-        found.everything_plan = {.footprint = Footprint::silhouette,
-                                 .depth_test = costs.has_gaps() ? DepthTest::split_box : DepthTest::box,
-                                 .tile_size =
-                                     found.way.plan.tiled ? found.way.plan.tile_size : plain->tile_size};
+        found.everything_plan = {
+            .depth_test = true, .tile_size = found.way.plan.tiled ? found.way.plan.tile_size : plain->tile_size};
         std::vector<Way> ways = {
             found.way,
             {.plan = found.plain_plan},
@@ -144,18 +123,11 @@ Found find(WayCosts& costs) {
         found.untiled = measured[2];
         found.everything = measured[3];
         const double total = found.cost.total();
-        std::vector<Part> parts;
         for (std::size_t i = 0; i < found.parts.size(); ++i) {
             Part& part = found.parts[i];
             part.gain = total - measured[4 + i].total();
             part.verdict.saved_ns = -part.gain;
-            const bool again = !parts.empty() && parts.back().verdict.part == part.verdict.part;
-            if (!again)
-                parts.push_back(part);
-            else if (part.gain > parts.back().gain)
-                parts.back() = part;
         }
-        found.parts = std::move(parts);
         const Part* best = nullptr;
         double most = 0;
         for (const Part& part : found.parts) {
@@ -179,10 +151,7 @@ std::string code(const Found& found, WayCosts& costs) {
              height, plan.tile_size);
     std::vector<std::string> options;
     if (way.narrow_ids) options.push_back(".ids = lightbin::IdWidth::u16");
-    if (plan.footprint != Footprint::rectangle)
-        options.push_back(".footprint = lightbin::Footprint::" + std::string(to_string(plan.footprint)));
-    if (plan.depth_test != DepthTest::none)
-        options.push_back(".depth_test = lightbin::DepthTest::" + std::string(to_string(plan.depth_test)));
+    if (plan.depth_test) options.push_back(".depth_test = true");
     if (plan.slicing != Slicing::none)
         options.push_back(".slicing = lightbin::Slicing::" + std::string(to_string(plan.slicing)));
     std::string all;
@@ -198,7 +167,6 @@ std::string code(const Found& found, WayCosts& costs) {
         std::vector<std::string> sides;
         if (way.minimum) sides.push_back("min");
         if (way.maximum) sides.push_back("max");
-        if (plan.depth_test == DepthTest::split_box) sides.insert(sides.end(), {"gap_min", "gap_max"});
         std::string vectors, spans;
         for (const std::string& side : sides) {
             vectors += (vectors.empty() ? "" : ", ") + side +
@@ -209,7 +177,7 @@ std::string code(const Found& found, WayCosts& costs) {
         inputs = "{.bounds = *bounds}";
         if (costs.reduces_on_gpu(way)) {
             lines += "  // as lightbin::reduce_shader() writes them\n";
-            inputs = "{.bounds = {" + spans + ", .background_skipped = true}}";
+            inputs = "{.bounds = {" + spans + "}}";
         } else {
             lines += "\nauto bounds = lightbin::reduce_depth(\n"
                      "    *view, {.depth = depth_buffer, .skip_background = true},\n"
@@ -318,7 +286,7 @@ std::string advise_scene(const Scene& scene, const AdviseSettings& settings) {
         costs->has_boxes() ? " and boxes" : "");
     if (!scene.transparent.empty())
         page +=
-            "             glass is left out; with Z bounds it needs lists of its own: bin_transparency()\n";
+            "             glass is left out; with Z bounds it needs lists of its own, by the maximum alone\n";
     const auto ms = [](double ns) { return 1e-6 * ns; };
     page +=
         text("frame        %.3f ms as advised: depth %.3f, build %.3f, upload %.3f, light evaluations %.3f\n",

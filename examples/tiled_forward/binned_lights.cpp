@@ -47,8 +47,11 @@ std::vector<lightbin::Spot> BinnedLights::as_spots(int dropped_light) const {
 }
 
 BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSettings& settings,
-                                      const lightbin::ZBounds& z_bounds) {
-    const auto bin_all = [&](const auto& lights) { return bin(view, lights, settings, z_bounds); };
+                                      const lightbin::ZBounds& z_bounds,
+                                      const lightbin::ZBounds& glass_z_bounds) {
+    const auto bin_all = [&](const auto& lights) {
+        return bin(view, lights, settings, z_bounds, glass_z_bounds);
+    };
     if (!has_boxes()) return visit_lights(settings.dropped_light, bin_all);
 
     // In every list ids ascend, so the shader finds all lights before the first box. A Spot that is a whole sphere takes
@@ -66,17 +69,20 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSetti
 
 template <class Lights>
 BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& lights,
-                                      const BinSettings& settings, const lightbin::ZBounds& z_bounds) {
+                                      const BinSettings& settings, const lightbin::ZBounds& z_bounds,
+                                      const lightbin::ZBounds& glass_z_bounds) {
     order_.clear();
     slices_.reset();
     const auto same = [](const lightbin::LightGrid<std::uint32_t>& grid) { return Grids{grid, grid}; };
     switch (settings.method) {
     case DepthMethod::none:
         return same(value_of(binner_.bin(view, lights)));
-    case DepthMethod::interval:
-        return bin_bounded(interval_binner_, view, lights, settings.glass, z_bounds);
-    case DepthMethod::box:
-        return bin_bounded(box_binner_, view, lights, settings.glass, z_bounds);
+    case DepthMethod::z_bounds: {
+        const auto opaque = value_of(bounded_binner_.bin(view, lights, {.bounds = z_bounds}));
+        if (!settings.glass) return same(opaque);
+        // Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
+        return {opaque, value_of(glass_binner_.bin(view, lights, {.bounds = glass_z_bounds}))};
+    }
     case DepthMethod::z_bins:
     case DepthMethod::clusters:
         break;
@@ -94,16 +100,6 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& 
     for (std::uint32_t light = 0; light < ranked.size(); ++light)
         if (!ranked[light]) order_.push_back(light);
     return same(grid);
-}
-
-// Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
-template <class Binner, class Lights>
-BinnedLights::Grids BinnedLights::bin_bounded(Binner& binner, const lightbin::View& view,
-                                              const Lights& lights, bool glass,
-                                              const lightbin::ZBounds& z_bounds) {
-    if (glass) return value_of(binner.bin_transparency(view, lights, {.bounds = z_bounds}));
-    const auto grid = value_of(binner.bin(view, lights, {.bounds = z_bounds}));
-    return {grid, grid};
 }
 
 std::span<const GpuLight> BinnedLights::in_order() {

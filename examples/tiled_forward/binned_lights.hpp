@@ -16,8 +16,7 @@
 // What keeps a light out of the lists of tiles that it covers.
 enum class DepthMethod {
     none,      // nothing
-    interval,  // Z bounds: its depths must meet the tile's
-    box,       // Z bounds: its sphere must meet the box around what the tile has between them
+    z_bounds,  // it must meet the box around what the tile has between its Z bounds
     z_bins,    // lists are entered and left by the bin of the fragment's depth
     clusters   // each tile has a list for each slice of depth
 };
@@ -34,7 +33,9 @@ lightbin::Slices slices_for(const BinSettings& settings, bool orthographic, std:
 
 class BinnedLights {
 public:
-    using Grids = lightbin::TransparencyGrids<std::uint32_t>;
+    struct Grids {
+        lightbin::LightGrid<std::uint32_t> opaque, glass;
+    };
 
     // Keeps the scene, whose lights may move from frame to frame.
     explicit BinnedLights(const Scene& scene);
@@ -62,7 +63,11 @@ public:
 
     // Which lights and boxes can reach which tile, and at what depths. Both grids are the same one where glass needs no
     // lists of its own. Valid until the next call.
-    Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds);
+    //
+    // z_bounds        of what is opaque
+    // glass_z_bounds  of what stands before that: maxima in which the background counts
+    Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds,
+              const lightbin::ZBounds& glass_z_bounds);
 
     // Of the last bin(), with z-bins or clusters.
     const std::optional<lightbin::Slices>& slices() const { return slices_; }
@@ -95,10 +100,7 @@ public:
 private:
     template <class Lights>
     Grids bin(const lightbin::View& view, const Lights& lights, const BinSettings& settings,
-              const lightbin::ZBounds& z_bounds);
-    template <class Binner, class Lights>
-    Grids bin_bounded(Binner& binner, const lightbin::View& view, const Lights& lights, bool glass,
-                      const lightbin::ZBounds& z_bounds);
+              const lightbin::ZBounds& z_bounds, const lightbin::ZBounds& glass_z_bounds);
 
     const Scene& scene_;
     bool has_spots_;
@@ -107,10 +109,7 @@ private:
     std::vector<std::uint32_t> order_;  // z-bins: of the ids, those out of view last
     std::optional<lightbin::Slices> slices_;
     lightbin::Binner<> binner_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> interval_binner_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> box_binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = true}> bounded_binner_, glass_binner_;
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> bin_binner_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
-                                       .slicing = lightbin::Slicing::clusters}>
-        cluster_binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = true, .slicing = lightbin::Slicing::clusters}> cluster_binner_;
 };

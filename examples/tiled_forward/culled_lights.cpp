@@ -69,8 +69,12 @@ void CulledLights::reduce(const lightbin::View& view, const FrameBuffer& drawn, 
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(options.depth.binding));
     drawn.bind_depth();
+    // The depth test reads the sides of the tiles behind their bounds.
+    const std::vector<lightbin::ShaderEdges> edges = lightbin::shader_edges(view);
+    std::vector<lightbin::ShaderEdges> content(view.tile_count());
+    content.insert(content.end(), edges.begin(), edges.end());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(options.z_bounds.binding),
-                     buffer("z_bounds", sizeof(lightbin::ShaderEdges) * view.tile_count()));
+                     buffer("z_bounds", sizeof(lightbin::ShaderEdges) * content.size(), content.data()));
     dispatch(static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y()));
 }
 
@@ -92,7 +96,7 @@ CulledLights::Made CulledLights::build(const lightbin::View& view, const Lists& 
     options.language = language_of(glsl_);
     options.kind = has_spots_ ? lightbin::CullKind::spot : lightbin::CullKind::sphere;
     options.lights_at.stride = sizeof(lightbin::Spot) / 4;
-    options.depth_test = wanted.test;
+    options.depth_test = wanted.depth_test;
     options.max_only = wanted.max_only;
     options.slicing = wanted.slices ? clusters : none;
     options.orthographic = view.orthographic();

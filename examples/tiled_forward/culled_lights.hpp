@@ -20,8 +20,7 @@
 class CulledLights {
 public:
     struct Lists {
-        lightbin::DepthTest test =
-            lightbin::DepthTest::none;             // interval: with the Z bounds of the last reduce()
+        bool depth_test = false;                   // without slices: with the Z bounds of the last reduce()
         bool max_only = false;                     // with the greater Z bound alone
         const lightbin::Slices* slices = nullptr;  // of clusters
     };
@@ -50,7 +49,7 @@ private:
         std::vector<lightbin::ShaderBinding> bindings;
         GLuint program;
     };
-    using Key = std::tuple<lightbin::DepthTest, bool, bool, bool>;  // test, max_only, clusters, orthographic
+    using Key = std::tuple<bool, bool, bool, bool>;  // depth_test, max_only, clusters, orthographic
 
     const std::vector<Pass>& passes(const lightbin::CullShaderOptions& options);
     GLuint buffer(const char* name, std::size_t bytes, const void* data = nullptr);

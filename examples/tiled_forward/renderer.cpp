@@ -29,7 +29,7 @@ lightbin::Slicing slicing_of(const FrameSettings& settings) {
 DepthMethod method_of(const FrameSettings& settings) {
     return settings.depth == DepthUse::z_bins     ? DepthMethod::z_bins
            : settings.depth == DepthUse::clusters ? DepthMethod::clusters
-           : settings.depth == DepthUse::pre_pass ? DepthMethod::interval
+           : settings.depth == DepthUse::pre_pass ? DepthMethod::z_bounds
                                                   : DepthMethod::none;
 }
 
@@ -110,29 +110,25 @@ Renderer::Listed Renderer::list_on_cpu(const lightbin::View& view, const FrameSe
 
     // Opaque surfaces end before the sky, glass is lit there too: its maximum counts the background.
     const bool glass = shows_glass(settings);
-    lightbin::ZBounds z_bounds;
     if (bounded) {
         min_depth_.resize(settings.z_bounds == ZBoundsUse::both ? view.tile_count() : 0);
         max_depth_.resize(view.tile_count());
-        transparent_max_.resize(glass ? view.tile_count() : 0);
-        if (on_gpu) {
-            reduce_on_gpu(view, true, min_depth_, max_depth_);
-            if (glass) reduce_on_gpu(view, false, {}, transparent_max_);
-            z_bounds = {.min = min_depth_,
-                        .max = max_depth_,
-                        .transparent_max = transparent_max_,
-                        .background_skipped = true};
-        } else {
-            z_bounds = value_of(lightbin::reduce_depth(
-                view, {.depth = depth_buffer_, .skip_background = true},
-                {.min = min_depth_, .max = max_depth_, .transparent_max = transparent_max_}));
-        }
+        glass_max_.resize(glass ? view.tile_count() : 0);
+        const auto reduce = [&](bool skip_background, std::span<float> min, std::span<float> max) {
+            if (on_gpu)
+                reduce_on_gpu(view, skip_background, min, max);
+            else
+                static_cast<void>(value_of(lightbin::reduce_depth(
+                    view, {.depth = depth_buffer_, .skip_background = skip_background}, {.min = min, .max = max})));
+        };
+        reduce(true, min_depth_, max_depth_);
+        if (glass) reduce(false, {}, glass_max_);
     }
     report.milliseconds.reduce = watch.lap();
 
     const auto [opaque, transparent] = binned_.bin(
         view, {.method = method_of(settings), .glass = glass, .dropped_light = settings.dropped_light},
-        z_bounds);
+        {.min = min_depth_, .max = max_depth_}, {.max = glass_max_});
     slices_ = binned_.slices();
     report.milliseconds.bin = watch.lap();
 
@@ -181,10 +177,10 @@ Renderer::Listed Renderer::list_on_gpu(const lightbin::View& view, const FrameSe
 
     CulledLights::Lists lists;
     slices_.reset();
-    if (bounded) lists = {lightbin::DepthTest::interval, settings.z_bounds == ZBoundsUse::max};
+    if (bounded) lists = {true, settings.z_bounds == ZBoundsUse::max};
     if (settings.depth == DepthUse::clusters) {
         slices_ = slices_for({.method = DepthMethod::clusters}, view.orthographic(), binned_.listed());
-        lists = {lightbin::DepthTest::box, false, &*slices_};
+        lists = {true, false, &*slices_};
         const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
         upload(slices_buffer_, words.data(), 4 * words.size(), static_cast<int>(list_binding_.width),
                "slices");

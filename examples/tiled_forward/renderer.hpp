@@ -159,5 +159,5 @@ private:
     lightbin::ShaderGrid grid_{};
     lightbin::ShaderView shader_view_{};
     std::optional<lightbin::Slices> slices_;  // with z-bins or clusters
-    std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_, pixel_depth_;
+    std::vector<float> depth_buffer_, min_depth_, max_depth_, glass_max_, pixel_depth_;
 };

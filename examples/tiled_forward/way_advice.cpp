@@ -24,7 +24,7 @@ lightbin::Advice WayCosts::advise() {
     const auto advised = [&](const auto& first) {
         const auto lights = lightbin::lights(first, sets_[0].boxes);
         const lightbin::Advice bounded = value_of(lightbin::advise(
-            view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
+            view_, lights, costs, reduced(view_.tile_size(), true, true).bounds));
         const lightbin::Advice sliced =
             value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
                                              {.depths = samples, .size = size}, costs));

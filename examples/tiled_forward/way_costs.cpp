@@ -12,8 +12,6 @@
 #include <thread>
 #include <utility>
 
-using lightbin::DepthTest;
-using lightbin::Footprint;
 using lightbin::IdWidth;
 using lightbin::Options;
 using lightbin::Slicing;
@@ -77,22 +75,14 @@ lightbin::Slices slices_of(DepthMethod method, const lightbin::View& view, const
 
 // The options of ways, but for the width of ids.
 constexpr Options ways[] = {
-    {.footprint = Footprint::rectangle},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
-    {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
-    {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
-    {.footprint = Footprint::silhouette},
-    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box},
-    {.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box},
-    {.footprint = Footprint::silhouette, .slicing = Slicing::z_bins},
-    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+    {},
+    {.depth_test = true},
+    {.slicing = Slicing::z_bins},
+    {.slicing = Slicing::clusters},
+    {.depth_test = true, .slicing = Slicing::clusters}};
 
 bool is(const lightbin::Plan& plan, const Options& way) {
-    return plan.tiled && plan.footprint == way.footprint && plan.depth_test == way.depth_test &&
-           plan.slicing == way.slicing;
+    return plan.tiled && plan.depth_test == way.depth_test && plan.slicing == way.slicing;
 }
 
 constexpr Options with_ids(Options way, IdWidth ids) {
@@ -119,12 +109,6 @@ WayCosts::WayCosts(const lightbin::View& view, const glm::mat4& projection, cons
 
 WayCosts::~WayCosts() = default;
 
-bool WayCosts::can_measure(const lightbin::Plan& plan) const {
-    if (plan.depth_test == DepthTest::split_box && !has_gaps()) return false;
-    return !plan.tiled ||
-           std::any_of(std::begin(ways), std::end(ways), [&](const Options& way) { return is(plan, way); });
-}
-
 // From their boundaries, as slices_for() lays them.
 std::string WayCosts::slices_in_words(Slicing slicing) const {
     const lightbin::Slices& slices = slicing == Slicing::z_bins ? z_bins_ : clusters_;
@@ -139,30 +123,27 @@ std::string WayCosts::slices_in_words(Slicing slicing) const {
     return words;
 }
 
-const WayCosts::Reduced& WayCosts::reduced(int tile_size, bool gaps, bool minimum, bool maximum) {
-    const auto [place, is_new] = reduced_.try_emplace({tile_size, gaps, minimum, maximum});
+const WayCosts::Reduced& WayCosts::reduced(int tile_size, bool minimum, bool maximum) {
+    const auto [place, is_new] = reduced_.try_emplace({tile_size, minimum, maximum});
     Reduced& reduced = place->second;
     if (!is_new) return reduced;
     const lightbin::View view = value_of(view_.with_tile_size(tile_size));
     reduced.min.resize(minimum ? view.tile_count() : 0);
     reduced.max.resize(maximum ? view.tile_count() : 0);
-    reduced.gap_min.resize(gaps ? view.tile_count() : 0);
-    reduced.gap_max.resize(gaps ? view.tile_count() : 0);
     std::vector<double> times;
     for (int turn = 0; turn < 5; ++turn)
         times.push_back(ns_of([&] {
-            reduced.bounds = value_of(
-                lightbin::reduce_depth(view, {.depth = depth_.depth, .skip_background = true},
-                                       {reduced.min, reduced.max, reduced.gap_min, reduced.gap_max}));
+            reduced.bounds =
+                value_of(lightbin::reduce_depth(view, {.depth = depth_.depth, .skip_background = true},
+                                                {reduced.min, reduced.max}));
         }));
     reduced.ns = median(times);
     return reduced;
 }
 
 double WayCosts::z_bounds_ns(const Way& way) {
-    const bool gaps = way.plan.depth_test == DepthTest::split_box;
-    const double here = prices_.read_back_ns + reduced(way.plan.tile_size, gaps, way.minimum, way.maximum).ns;
-    return prices_.depth_pass_ns + (gaps ? here : std::min(here, prices_.gpu_reduction_ns));
+    const double here = prices_.read_back_ns + reduced(way.plan.tile_size, way.minimum, way.maximum).ns;
+    return prices_.depth_pass_ns + std::min(here, prices_.gpu_reduction_ns);
 }
 
 bool WayCosts::reduces_on_gpu(const Way& way) {
@@ -176,9 +157,7 @@ template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) 
     const auto least = std::make_shared<std::vector<lightbin::Sphere>>();
     lightbin::ZBounds bounds;
     if (way.plan.has_z_bounds())
-        bounds =
-            reduced(way.plan.tile_size, options.depth_test == DepthTest::split_box, way.minimum, way.maximum)
-                .bounds;
+        bounds = reduced(way.plan.tile_size, way.minimum, way.maximum).bounds;
     return [=, this, &slices](const ViewLights& lights, Counts* counts) {
         const auto parallel = way.threads ? lightbin::Parallel(workers_, *pool_) : lightbin::Parallel();
         const auto bin = [&](const auto& taken) {

@@ -70,11 +70,6 @@ public:
     // Bytes and evaluations are counted with the lights where they are. A way whose plan it can't measure costs infinity.
     std::vector<WayCost> measure(std::span<const Way> ways);
 
-    // Whether measure() knows the plan's options.
-    bool can_measure(const lightbin::Plan& plan) const;
-    // Gaps are found on the processor alone, so not where depth is not read back.
-    bool has_gaps() const { return std::isfinite(prices_.read_back_ns); }
-
     // Whether Z bounds of the way cost less where the depth buffer lies. measure() takes the cheaper.
     bool reduces_on_gpu(const Way& way);
 
@@ -88,7 +83,7 @@ public:
 
 private:
     struct Reduced {
-        std::vector<float> min, max, gap_min, gap_max;
+        std::vector<float> min, max;
         lightbin::ZBounds bounds;
         double ns = 0;
     };
@@ -99,7 +94,7 @@ private:
     // Builds the lists of a light set, and returns how many nanoseconds that took. Counts if asked to.
     using Build = std::function<double(const ViewLights& lights, Counts* counts)>;
 
-    const Reduced& reduced(int tile_size, bool gaps, bool minimum, bool maximum);
+    const Reduced& reduced(int tile_size, bool minimum, bool maximum);
     double z_bounds_ns(const Way& way);
     Build build_of(const Way& way);
     template <lightbin::Options options> Build build_with(const Way& way);
@@ -111,7 +106,7 @@ private:
     lightbin::Slices clusters_, z_bins_;
     double clusters_ns_ = 0, z_bins_ns_ = 0;  // to make them
     Prices prices_;
-    std::map<std::tuple<int, bool, bool, bool>, Reduced> reduced_;
+    std::map<std::tuple<int, bool, bool>, Reduced> reduced_;
     std::size_t workers_;
     std::unique_ptr<Pool> pool_;
 };

@@ -6,14 +6,13 @@ import {load_scenes} from './scenes.js';
 // By what the page's settings call a depth method: lightbin's options.
 const options = {
     none: {},
-    interval: {depthTest: 'interval'},
-    box: {depthTest: 'box'},
+    z_bounds: {depthTest: true},
     z_bins: {slicing: 'z-bins'},
-    clusters: {depthTest: 'box', slicing: 'clusters'},
+    clusters: {depthTest: true, slicing: 'clusters'},
 };
 
-// Depth methods that want Z bounds from a depth pre-pass.
-export const wants_bounds = method => method === 'interval' || method === 'box';
+// Whether a depth method wants Z bounds from a depth pre-pass.
+export const wants_bounds = method => method === 'z_bounds';
 
 // How lightbin's shader text calls the slicing of a method.
 export const slicing_of = method => options[method].slicing ?? 'no-slicing';
@@ -130,7 +129,7 @@ export class Lighting {
     #lists({method, ...settings}, {shapes, reach}, z_bounds) {
         if (!options[method]) throw new Error(`there is no method '${method}'`);
         const slices = this.#slices(method, settings, reach);
-        const bounds = wants_bounds(method) ? {min: z_bounds?.min, max: z_bounds?.max, backgroundSkipped: true} : null;
+        const bounds = wants_bounds(method) ? {min: z_bounds?.min, max: z_bounds?.max} : null;
         try {
             const grid = this.#binner(method, false).bin(this.#view, shapes, {slices, bounds});
             // Glass may stand anywhere before the opaque surfaces, so with bounds it has lists of its own.

@@ -20,7 +20,7 @@ const defaults = {
 
 const choices = {
     scene: ['city', 'street', 'nova', 'darkness'],
-    method: ['none', 'z_bins', 'clusters', 'interval', 'box'],
+    method: ['none', 'z_bins', 'clusters', 'z_bounds'],
     renderer: ['webgl', 'webgpu'],
     look: ['lit', 'heat', 'check'],
 };

@@ -31,8 +31,7 @@ export class WebGl {
         this.#canvas = canvas;
         this.#gl = gl;
         if (!gl.getExtension('EXT_color_buffer_float'))
-            this.refused.interval = this.refused.box =
-                'Z bounds can\'t be had here: this WebGL 2 lacks EXT_color_buffer_float';
+            this.refused.z_bounds = 'Z bounds can\'t be had here: this WebGL 2 lacks EXT_color_buffer_float';
         this.#frame_buffer = new FrameBuffer(gl);
         this.#bounds_buffer = gl.createFramebuffer();
         this.#timer = new Timer(gl);

@@ -31,9 +31,8 @@ struct Costs {
 /// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
 /// View::with_tile_size() the tile size.
 struct Plan {
-    bool tiled = true;  ///< false: every pixel evaluates every light; `footprint` to `tile_size` mean nothing
-    Footprint footprint = Footprint::rectangle;
-    DepthTest depth_test = DepthTest::none;
+    bool tiled = true;  ///< false: every pixel evaluates every light; `depth_test` to `tile_size` mean nothing
+    bool depth_test = false;
     Slicing slicing = Slicing::none;  ///< values other than `none` need the slices given to advise_slices()
     int tile_size = 0;
     double build_ns = 0;        ///< the time to build the lists, plus Costs::z_bounds_ns if the plan has Z bounds
@@ -43,33 +42,31 @@ struct Plan {
     double evaluations = 0;
     double total_ns = 0;  ///< the time of a frame: build_ns + upload_ns + evaluations * Costs::evaluation_ns
 
-    bool has_z_bounds() const {
-        return tiled && depth_test != DepthTest::none && slicing != Slicing::clusters;
-    }
+    bool has_z_bounds() const { return tiled && depth_test && slicing != Slicing::clusters; }
 };
 
-/// Returns a plan in words, such as "16 px, rectangle, box".
+/// Returns a plan in words, such as "16 px, depth test".
 inline std::string to_string(const Plan& plan) {
     if (!plan.tiled) return "every light in every pixel";
-    std::string words = std::to_string(plan.tile_size) + " px, " + to_string(plan.footprint);
-    if (plan.depth_test != DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
+    std::string words = std::to_string(plan.tile_size) + " px";
+    if (plan.depth_test) words += ", depth test";
     if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
     return words;
 }
 
 /// What one technique saves or costs in a plan that verdicts() judges. Techniques are tiles, a depth pre-pass,
-/// DepthTest::box or split_box, split_box alone, Slicing::clusters, Slicing::z_bins and Footprint::silhouette.
+/// the depth test, Slicing::clusters and Slicing::z_bins.
 struct Verdict {
-    std::string part;     ///< the technique's name, such as "box"
+    std::string part;     ///< the technique's name, such as "clusters"
     bool keep = false;    ///< whether the judged plan uses the technique that `part` names
     Plan other = {};      ///< the cheapest measured plan that lacks the technique if `keep` is true, else that uses it
     std::string instead;  ///< `other` in words; empty if no measured plan differs from the judged one in `part`
     double saved_ns = 0;  ///< the time of a frame with the Plan `other` minus that with the judged plan
 };
 
-/// Returns a line such as  "box          keep: saves 1.200 ms    instead: 16 px, rectangle, interval".  This says that
-/// the judged plan uses DepthTest::box, and that the cheapest plan without it, which has tiles of 16 pixels,
-/// Footprint::rectangle and DepthTest::interval, takes 1.2 ms more per frame.
+/// Returns a line such as  "clusters     keep: saves 1.200 ms    instead: 16 px, z_bins".  This says that the judged
+/// plan has clusters, and that the cheapest plan without them, which has tiles of 16 pixels and z-bins, takes 1.2 ms
+/// more per frame.
 inline std::string to_string(const Verdict& verdict);
 
 /// Every plan (options of a Binner and a tile size) that was measured, in ascending order of the time of a frame.
@@ -120,17 +117,17 @@ template <Options base = Options{}, class Visit>
 decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 
 /// Measures what each way to light a view costs: without tiles; and with tiles of the view's tile size, of 2, 4 and 8
-/// times that size, and of one tile as large as the screen, each with rectangles, silhouettes, and the depth tests that
-/// `bounds` allow. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
+/// times that size, and of one tile as large as the screen, each without and, if there are `bounds`, with the
+/// depth test. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
 /// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
 /// lights moved slightly sideways each time but the first, and takes the shortest time. It keeps no memory.
 ///
 /// lights  as for Binner::bin()
-/// bounds  Z bounds of the view's own tiles, from which bounds of larger tiles are merged. Without bounds, no depth
-///         test is measured, and every pixel is assumed to have something to light: if a third of the pixels is sky,
-///         multiply Costs::evaluation_ns by two thirds
+/// bounds  Z bounds of the view's own tiles, from which bounds of larger tiles are merged. Without bounds, the
+///         depth test is not measured, and every pixel is assumed to have something to light: if a third of the pixels
+///         is sky, multiply Costs::evaluation_ns by two thirds
 /// base    the options that a plan leaves open: ids, isa
 /// Clock   a clock like those of <chrono>; one that counts this thread's own time is better on a busy machine
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
@@ -151,12 +148,11 @@ struct WeighedSlices {
     const Slices& z_bins;    ///< typically some hundreds
 };
 
-/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles with rectangles
-/// or silhouettes; rectangles with z-bins; clusters with rectangles, without a depth test or with DepthTest::box;
-/// clusters with silhouettes and DepthTest::box. The tile sizes are those of advise(). Each depth sample stands for an
-/// equal share of the pixels, which evaluate the list of their tile; with z-bins its part between the ranks of the
-/// depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors: those of
-/// Binner::bin(), and fewer depths than samples.size says.
+/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles; tiles with
+/// z-bins; clusters without and with the depth test. The tile sizes are those of advise(). Each depth
+/// sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part between
+/// the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors:
+/// those of Binner::bin(), and fewer depths than samples.size says.
 ///
 /// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
 /// off. It takes longer than advise(), because clusters of the smallest tiles do.

@@ -14,9 +14,9 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The inputs of Binner::bin() beside the lights. An input that the options read must be given, and no other may be.
-template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
+template <bool depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
-                          reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
+                          reads_bounds = depth_test && slicing != Slicing::clusters;
 
     /// The depth slices. Temporary Slices are copied; other Slices must live until the Binner's call returns.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
@@ -31,10 +31,10 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
 template <Options options>
 requires(options.slicing == Slicing::none)
 Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
-    if constexpr (options.depth_test == DepthTest::none)
-        return {};
-    else
+    if constexpr (options.depth_test)
         return {.bounds = bounds};
+    else
+        return {};
 }
 
 /// Returns Inputs with the bounds or slices, or both, that the options read. For templates whose options vary,
@@ -50,10 +50,6 @@ Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZB
     else
         return {.slices = slices};
 }
-
-/// Two grids of one scene (Tiled Forward Shading, section 4.5, Listing 4.2). `opaque` is tested against minimum and
-/// maximum depth; `transparent` against the maximum alone, as transparent geometry may be anywhere before opaque.
-template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 
 /// Bins lights into screen tiles.
 ///
@@ -99,66 +95,22 @@ public:
                               const Threads& threads = {}) {
         const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(view, lights, inputs, threads)) return *error;
-        return build<kind<LightRange>>(lists_, view, inputs.bounds, threads);
-    }
-
-    /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are
-    /// valid until the Binner's next call. Errors: those of bin(), and bounds that leave out the background
-    /// (ZBounds::background_skipped) and have a `max` but no `transparent_max`.
-    ///
-    /// inputs  the bounds are those of the opaque geometry. Lights for transparent geometry are tested against
-    ///         transparent_max, or against max where that is empty
-    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
-    requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
-                                                                        const LightRange& lights,
-                                                                        const Inputs& inputs,
-                                                                        const Threads& threads = {}) {
-        const detail::DefaultFloatEnvironment environment;
-        const Result<ZBounds> in_front = detail::transparent_bounds(inputs.bounds);
-        if (!in_front) return in_front.error();
-        if (const auto error = project(view, lights, inputs, threads)) return *error;
-        const auto transparent = build<kind<LightRange>>(transparent_, view, *in_front, threads);
-        if (!transparent) return transparent.error();
-        const auto opaque = build<kind<LightRange>>(lists_, view, inputs.bounds, threads);
-        if (!opaque) return opaque.error();
-        return TransparencyGrids<Id>{*opaque, *transparent};
-    }
-
-    /// Writes a bitmask per tile to `bits`, without making lists: the same words that encode() makes of bin()'s grid
-    /// with {.encoding = ListEncoding::bitmask, .max_lights = max_lights}. This is faster up to about a thousand
-    /// lights. Returns how many lights there are and how many were left out, and with z_bins the order of the lights by
-    /// depth and the z-bins' ranges in it, which are valid until the next call.
-    ///
-    /// Errors: those of bin() except for too many entries, as none are counted; fewer words in `bits` than (max_lights
-    /// + 31) / 32 per tile; more lights than max_lights (with z_bins, in view). The last two leave `bits` as it was.
-    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
-    requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
-                                                   std::uint32_t max_lights, std::span<std::uint32_t> bits,
-                                                   const Inputs& inputs = {}, const Threads& threads = {}) {
-        const detail::DefaultFloatEnvironment environment;
-        const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
-                            words = detail::product_of_sizes(view.tile_count(), each);
-        if (bits.size() < words) return Error{ErrorCode::bit_buffer_too_small, words, bits.size()};
-        if (const auto error = project(view, lights, inputs, threads)) return *error;
-        const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
-        if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
-        if (const auto error = lists_.template write_bits<kind<LightRange>>(
-                isa_, view, visible(), inputs.bounds, scratch_, threads, bits.data(),
-                static_cast<std::size_t>(each)))
+        if (const auto error =
+                lists_.template build<kind<LightRange>>(isa_, view, visible(), inputs.bounds, scratch_, threads))
             return *error;
-        return LightBits{footprints_.counts(), visible().ranks()};
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists_.tiles(), lists_.indices(), footprints_.counts(),
+                             visible().slices(), visible().ranks());
     }
 
     /// Returns what each light in view covers, in ascending order of id, for the lights and the view of the last call
-    /// of bin(), bin_transparency() or bin_bits(). It is valid until the next call. After an error it may be empty.
+    /// of bin(). It is valid until the next call. After an error it may be empty.
     std::span<const LightCoverage> coverage() const requires(options.coverage) { return coverage_.all(); }
 
 private:
-    using Lists = detail::GridLists<Id, options.footprint, options.depth_test, clusters>;
+    using Lists = detail::GridLists<Id, options.depth_test, clusters>;
     struct Nothing {};
-    using Ordered = std::conditional_t<
-        clusters, SlicedFootprints<options.footprint>,
-        std::conditional_t<z_bins, RankedFootprints<options.footprint>, Nothing>>;
+    using Ordered =
+        std::conditional_t<clusters, SlicedFootprints, std::conditional_t<z_bins, RankedFootprints, Nothing>>;
 
     /// The kind of the caller's lights.
     template <class LightRange>
@@ -175,7 +127,7 @@ private:
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
-        footprints_.project(isa_, view, source, threads, detail::with_boxes<options.depth_test>);
+        footprints_.project(isa_, view, source, threads, options.depth_test);
         if constexpr (options.coverage) coverage_.template find<kind<LightRange>>(view, footprints_, threads);
         if constexpr (Inputs::reads_slices)
             return ordered_.template order<kind<LightRange>>(isa_, view, footprints_, inputs.slices);
@@ -191,32 +143,20 @@ private:
             return footprints_;
     }
 
-    /// Builds the lists of the projected lights into `lists` and returns their grid.
-    template <detail::LightKind of_kind, class Threads>
-    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
-                                const Threads& threads) {
-        if (const auto error = lists.template build<of_kind>(isa_, view, visible(), bounds, scratch_, threads))
-            return *error;
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), footprints_.counts(),
-                             visible().slices(), visible().ranks());
-    }
-
     void swap(Binner& other) noexcept {
         std::swap(isa_, other.isa_);
         scratch_.swap(other.scratch_);
         std::swap(footprints_, other.footprints_);
         std::swap(ordered_, other.ordered_);
         std::swap(lists_, other.lists_);
-        std::swap(transparent_, other.transparent_);
         std::swap(coverage_, other.coverage_);
     }
 
     Isa isa_ = Isa::scalar;
     detail::Buffer<detail::Scratch> scratch_;  ///< working memory, one Scratch per worker
-    Footprints<options.footprint, with_depth || options.slicing != Slicing::none || options.coverage> footprints_;
+    Footprints<with_depth || options.slicing != Slicing::none || options.coverage> footprints_;
     Ordered ordered_;
     Lists lists_;
-    std::conditional_t<with_depth, Lists, Nothing> transparent_;
     std::conditional_t<options.coverage, detail::CoverageList, Nothing> coverage_;
 };
 

@@ -117,15 +117,6 @@ public:
         return BudgetedGrid<Id>{shortened, static_cast<std::uint32_t>(entries - size_), {cut, cells}};
     }
 
-    /// A Budget takes no bitmasks of bin_bits(): this overload is a compile error that says what to do instead.
-    template <std::same_as<LightBits> Bits>
-    void limit(const Bits&, std::span<const float>, const BudgetLimits&) {
-        static_assert(
-            sizeof(Bits) == 0,
-            "lightbin: a Budget shortens lists, and bin_bits() makes none: limit() the grid that bin() "
-            "returns, and have encode() make bitmasks of the result");
-    }
-
 private:
     /// Stores in orders_ the weight_order() of each id's light, and in classes_ in which of 256 intervals it lies.
     ///

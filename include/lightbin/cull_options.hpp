@@ -60,8 +60,8 @@ struct CullShaderOptions {
     std::uint32_t count_at = 0;    ///< with count_in_buffer: the index of the word that holds the number
 
     IdWidth ids = IdWidth::u32;              ///< u32, or u16: then each word of `lists` holds two ids
-    DepthTest depth_test = DepthTest::none;  ///< split_box is an error; with clusters, interval is, too
-    Slicing slicing = Slicing::none;         ///< z_bins is an error
+    bool depth_test = false;
+    Slicing slicing = Slicing::none;  ///< z_bins is an error
     bool max_only = false;      ///< tests with the maximum Z bound alone, for transparent surfaces; not with clusters
     bool orthographic = false;  ///< whether the view is orthographic: View::orthographic()
 

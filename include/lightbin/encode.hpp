@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes a light grid's lists in another format: narrower ids, a sentinel at each list's end, or a bitmask per tile.
+// Writes a light grid's lists in another format: narrower ids, or a sentinel at each list's end.
 #pragma once
 
 #include <lightbin/detail/base/checked_sizes.hpp>
@@ -13,28 +13,18 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Returns how many lights a format can number. A sentinel takes one of the ids; a bitmask can number 2^32 - 1 lights.
+/// Returns how many lights a format can number. A sentinel takes one of the ids.
 inline std::uint64_t countable_lights(const ListFormat& format) {
     const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
-    if (format.encoding == ListEncoding::bitmask) return 0xffffffff;
     return format.encoding == ListEncoding::sentinel ? values - 1 : values;
 }
 
 namespace detail {
 
-/// Returns how many ids (sentinel) or 32-bit words (bitmask) the format reserves for each tile.
-inline std::uint64_t elements_per_tile(const ListFormat& format) {
-    return format.encoding == ListEncoding::bitmask ? (format.max_lights + 31ull) / 32 : format.capacity;
-}
-
 /// Returns the error of a format that is inconsistent, and so refused by encode() and shader_snippet().
 inline std::optional<Error> refuse(const ListFormat& format) {
-    if (format.max_lights > countable_lights(format))
-        return Error{ErrorCode::ids_too_narrow, format.max_lights, countable_lights(format)};
     if (format.encoding == ListEncoding::sentinel && format.capacity == 0)
         return Error{ErrorCode::capacity_unknown};
-    if (format.encoding == ListEncoding::bitmask && format.max_lights == 0)
-        return Error{ErrorCode::max_lights_unknown};
     return std::nullopt;
 }
 
@@ -53,29 +43,14 @@ void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* 
     }
 }
 
-template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t bytes_a_tile, std::byte* out) {
-    std::fill_n(out, bytes_a_tile * grid.ranges().size(), std::byte{0});
-    for (const ListRange range : grid.ranges()) {
-        for (const Id id : grid.ids().subspan(range.offset, range.count)) {
-            std::byte* const at = out + id / 32u * 4;
-            std::uint32_t word = 0;
-            std::memcpy(&word, at, 4);
-            word |= std::uint32_t{1} << id % 32u;
-            std::memcpy(at, &word, 4);
-        }
-        out += bytes_a_tile;
-    }
-}
-
 }  // namespace detail
 
 /// Returns how many bytes, a multiple of 4, encode() needs for `tiles` tiles and `entries` ids; 2^64 - 4 for any more.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
     const std::uint64_t elements = format.encoding == ListEncoding::offset_count
                                        ? entries
-                                       : detail::product_of_sizes(tiles, detail::elements_per_tile(format));
-    const std::uint64_t width =
-        format.encoding == ListEncoding::bitmask ? 4 : static_cast<std::uint64_t>(format.ids);
+                                       : detail::product_of_sizes(tiles, format.capacity);
+    const std::uint64_t width = static_cast<std::uint64_t>(format.ids);
     constexpr std::uint64_t limit = ~std::uint64_t{3};
     return elements > limit / width ? limit : (elements * width + 3) / 4 * 4;
 }
@@ -94,14 +69,14 @@ struct Encoded {
 /// Every list is complete, except that the sentinel format cuts a list longer than its capacity: the lowest `capacity`
 /// ids stay, and the result counts the entries that were cut.
 ///
-/// Errors, after which `out` is unchanged: the format lacks its capacity or max_lights, or max_lights exceeds what its
-/// ids can tell apart; an id of the grid is too large for the format; `out` is too small.
+/// Errors, after which `out` is unchanged: the format lacks its capacity; an id of the grid is too large for the
+/// format; `out` is too small.
 template <class Id>
 Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
     if (const auto error = detail::refuse(format)) return *error;
     const std::uint64_t bytes = encoded_bytes(format, grid.ranges().size(), grid.ids().size());
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
-    const std::uint64_t limit = format.max_lights ? format.max_lights : countable_lights(format);
+    const std::uint64_t limit = countable_lights(format);
 
     Encoded encoded;
     std::uint64_t needed = 0;  // the greatest id + 1
@@ -114,9 +89,7 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
         ++encoded.tiles_cut;
     }
     if (needed > limit) return Error{ErrorCode::ids_too_narrow, needed, limit};
-    if (format.encoding == ListEncoding::bitmask)
-        detail::encode_bits(grid, static_cast<std::size_t>(encoded_bytes(format, 1, 0)), out.data());
-    else if (format.ids == IdWidth::u8)
+    if (format.ids == IdWidth::u8)
         detail::encode_ids<std::uint8_t>(grid, format, out.data());
     else if (format.ids == IdWidth::u16)
         detail::encode_ids<std::uint16_t>(grid, format, out.data());

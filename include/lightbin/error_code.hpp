@@ -40,7 +40,6 @@ enum class ErrorCode : std::uint8_t {
     depth_buffer_too_small,
     samples_out_of_range,
     row_pitch_too_small,
-    no_transparent_max,
     // slices
     no_slices,
     slice_range_empty,
@@ -52,9 +51,7 @@ enum class ErrorCode : std::uint8_t {
     // encodings and shader text
     ids_too_narrow,
     list_buffer_too_small,
-    bit_buffer_too_small,
     capacity_unknown,
-    max_lights_unknown,
     block_size_unknown,
     uniform_block_too_small,
     no_storage_buffers,
@@ -65,7 +62,6 @@ enum class ErrorCode : std::uint8_t {
     no_sets,
     no_push_constants,
     no_multisample_textures,
-    no_split_box_shader,
     no_such_slicing_shader,
     no_wave_operations,
     texture_width_out_of_range,
@@ -133,8 +129,6 @@ inline constexpr const char* error_sentences[] = {
     "the depth buffer holds {available} samples and {needed} are needed",
     "a depth buffer has 1 to 8 samples a pixel, not {given}",
     "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}",
-    ("the Z bounds leave out the background, in front of which transparent geometry is seen, too: give a "
-     "buffer transparent_max when depth is reduced, or count the background"),
     // slices
     "there must be at least 1 slice, not {given}",
     ("two or more slices need a range of finite depths: 0 < first < last if they are exponential, begin < end if they "
@@ -147,11 +141,9 @@ inline constexpr const char* error_sentences[] = {
     "a budget needs a weight for each of the {needed} lights that were binned, and was given {available}",
     "the buffer with one element per light has {available}, and {needed} lights were binned",
     // encodings and shader text
-    "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
+    "the lists' format numbers {available} lights and {needed} are needed: use wider ids",
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
-    "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
     "sentinel lists need the option capacity, the lights a tile can hold",
-    "bitmasks need the option max_lights, which fixes the words a tile",
     ("uniform blocks have a fixed size: give the option max_tiles, for lists with offsets and counts max_entries, and "
      "for slicing max_slices"),
     ("a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower ids or another "
@@ -165,9 +157,7 @@ inline constexpr const char* error_sentences[] = {
     "this language has no descriptor sets, register spaces or groups: each set must be 0, and one is {given}",
     "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
-    "grids that are built on the GPU can test depth by intervals and boxes, but not by split boxes",
-    ("lists that are built on the GPU are of tiles or of clusters, not of z-bins, and clusters test depth by boxes, not "
-     "by intervals"),
+    "lists that are built on the GPU are of tiles or of clusters, not of z-bins",
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",

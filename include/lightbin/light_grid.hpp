@@ -49,12 +49,6 @@ struct LightRanks {
     std::span<const BinRange> bins;        ///< per z-bin, the range in `order` of its lights; one z-bin per slice
 };
 
-/// What Binner::bin_bits() returns. The bitmasks are in the caller's memory.
-struct LightBits {
-    LightCounts counts;
-    LightRanks ranks;  ///< the order of the lights by depth, with Slicing::z_bins; else empty
-};
-
 /// A finished light grid. It does not own its memory; the function that returns the grid says how long that is valid.
 template <class Id> class LightGrid {
 public:

@@ -90,7 +90,6 @@ typedef enum lightbin_error {
     LIGHTBIN_NO_SLICES_GIVEN = 8,  /* the binner's options read slices */
     LIGHTBIN_NO_BOUNDS_GIVEN = 9,  /* the binner's options read Z bounds */
     LIGHTBIN_NOT_READ = 10,        /* slices, Z bounds or a matrix were given that the options do not read */
-    LIGHTBIN_OPTIONS_NOT_TOGETHER = 11, /* clusters have no interval or split_box test */
     LIGHTBIN_BUFFER_TOO_SMALL = 12,
     LIGHTBIN_CALLBACK_THREW = 13,  /* a C++ callback of the program threw an exception */
     LIGHTBIN_COVERAGE_IS_OFF = 14, /* the binner's options do not ask for coverage */
@@ -122,16 +121,13 @@ typedef enum lightbin_error {
     LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 121,
     LIGHTBIN_SAMPLES_OUT_OF_RANGE = 122,
     LIGHTBIN_ROW_PITCH_TOO_SMALL = 123,
-    LIGHTBIN_NO_TRANSPARENT_MAX = 124,
     LIGHTBIN_NO_SLICES = 125,
     LIGHTBIN_SLICE_RANGE_EMPTY = 126,
     LIGHTBIN_SLICES_DO_NOT_ASCEND = 127,
     LIGHTBIN_TOO_MANY_CELLS = 128,
     LIGHTBIN_IDS_TOO_NARROW = 129,
     LIGHTBIN_LIST_BUFFER_TOO_SMALL = 130,
-    LIGHTBIN_BIT_BUFFER_TOO_SMALL = 131,
     LIGHTBIN_CAPACITY_UNKNOWN = 132,
-    LIGHTBIN_MAX_LIGHTS_UNKNOWN = 133,
     LIGHTBIN_BLOCK_SIZE_UNKNOWN = 134,
     LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
     LIGHTBIN_NO_STORAGE_BUFFERS = 136,
@@ -141,7 +137,6 @@ typedef enum lightbin_error {
     LIGHTBIN_NO_SETS = 140,
     LIGHTBIN_NO_PUSH_CONSTANTS = 141,
     LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 142,
-    LIGHTBIN_NO_SPLIT_BOX_SHADER = 143,
     LIGHTBIN_NO_SUCH_SLICING_SHADER = 144,
     LIGHTBIN_NO_WAVE_OPERATIONS = 145,
     LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 146,
@@ -440,7 +435,8 @@ typedef struct lightbin_depth_buffer {
     size_t count;     /* the number of floats in `depth` */
     size_t row_pitch; /* floats from one row to the next; 0: width * samples */
     int32_t format;   /* a lightbin_depth_format */
-    /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. */
+    /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. For opaque
+     * surfaces alone: transparent ones are seen in front of the background, too. */
     int32_t skip_background;
 } lightbin_depth_buffer;
 
@@ -449,19 +445,16 @@ typedef struct lightbin_depth_buffer {
  * no light. A NaN stands for no bound. */
 typedef struct lightbin_z_bounds {
     uint32_t size;
-    int32_t background_skipped; /* not 0: min, max and the gaps were made without the background */
+    uint32_t unused;
     const float *min, *max;
-    const float *gap_min, *gap_max; /* read by LIGHTBIN_SPLIT_BOX: nothing is drawn strictly between them */
-    const float* transparent_max; /* read by lightbin_bin_transparency(): maxima that count the background */
     size_t tiles;                 /* the number of floats in each array, the view's number of tiles or more */
 } lightbin_z_bounds;
 
-/* Memory for Z bounds: arrays of `tiles` floats for the bounds that are wanted, null for the others. Gaps are wanted if
- * both their arrays are given. */
+/* Memory for Z bounds: arrays of `tiles` floats for the bounds that are wanted, null for the others. */
 typedef struct lightbin_z_bounds_buffers {
     uint32_t size;
     int32_t isa; /* a lightbin_isa: use no wider instructions than these; the result is the same */
-    float *min, *max, *gap_min, *gap_max, *transparent_max;
+    float *min, *max;
     size_t tiles;
 } lightbin_z_bounds_buffers;
 
@@ -481,21 +474,6 @@ typedef enum lightbin_ids {
     LIGHTBIN_U16 = 2 /* up to 65,536 lights */
 } lightbin_ids;
 
-/* How the tiles that a light's projection covers are computed. */
-typedef enum lightbin_footprint {
-    LIGHTBIN_RECTANGLE = 0, /* the tiles of the projection's bounding rectangle */
-    LIGHTBIN_SILHOUETTE = 1 /* one exact span of tiles a tile row */
-} lightbin_footprint;
-
-/* The test that keeps a light out of tiles by depth. All but NO_DEPTH_TEST need Z bounds or clusters. */
-typedef enum lightbin_depth_test {
-    LIGHTBIN_NO_DEPTH_TEST = 0,
-    LIGHTBIN_INTERVAL = 1, /* the light's depths must meet the tile's Z bounds */
-    /* And the light must meet the box, in view space, around the tile between its Z bounds */
-    LIGHTBIN_BOX = 2,
-    LIGHTBIN_SPLIT_BOX = 3 /* as BOX, with two boxes, one in front of and one behind the tile's depth gap */
-} lightbin_depth_test;
-
 /* How slices narrow the lights of a tile by depth. */
 typedef enum lightbin_slicing {
     LIGHTBIN_NO_SLICING = 0,
@@ -507,12 +485,13 @@ typedef enum lightbin_slicing {
 
 typedef struct lightbin_binner_options {
     uint32_t size;
-    int32_t ids;        /* LIGHTBIN_U32 or LIGHTBIN_U16 */
-    int32_t footprint;  /* a lightbin_footprint */
-    int32_t depth_test; /* a lightbin_depth_test; with clusters NO_DEPTH_TEST or BOX */
-    int32_t slicing;    /* a lightbin_slicing */
-    int32_t coverage;   /* not 0: find what each light covers, for lightbin_binner_coverage() */
-    int32_t isa;        /* a lightbin_isa: use no wider instructions than these; the lists are the same */
+    int32_t ids; /* LIGHTBIN_U32 or LIGHTBIN_U16 */
+    /* Not 0: a light is listed in a tile only if it meets the tile's Z bounds and the box, in view space, around the
+     * tile between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters. */
+    int32_t depth_test;
+    int32_t slicing;  /* a lightbin_slicing */
+    int32_t coverage; /* not 0: find what each light covers, for lightbin_binner_coverage() */
+    int32_t isa;      /* a lightbin_isa: use no wider instructions than these; the lists are the same */
 } lightbin_binner_options;
 
 /* Bins lights into tiles, and keeps the memory that this takes. */
@@ -522,7 +501,7 @@ typedef struct lightbin_binner lightbin_binner;
  *
  * options    null: the defaults, all 0
  *
- * Errors: LIGHTBIN_OPTIONS_NOT_TOGETHER; LIGHTBIN_NO_SUCH_ISA. */
+ * Errors: LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                                     lightbin_binner** binner);
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
@@ -582,40 +561,6 @@ LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbi
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
 
-/* Makes two grids in one call, one for opaque and one for transparent geometry, which may lie anywhere in front of what
- * is opaque: there lights are tested against bounds->transparent_max alone, or against bounds->max if that is null. The
- * binner needs a depth test, and no clusters. Errors: those of lightbin_bin(); LIGHTBIN_OPTIONS_NOT_TOGETHER for other
- * binners; LIGHTBIN_NO_TRANSPARENT_MAX, if the bounds leave out the background (background_skipped) and have a max but
- * no transparent_max. */
-LIGHTBIN_API lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbin_view* view,
-                                                       const lightbin_lights* lights,
-                                                       const lightbin_inputs* inputs, lightbin_grid* opaque,
-                                                       lightbin_grid* transparent);
-
-/* What lightbin_bin_bits() returns beside the bitmasks. The arrays are valid until the binner's next call. */
-typedef struct lightbin_bits {
-    uint32_t size;
-    uint32_t lights, rejected, culled;
-    const uint32_t* order; /* with z-bins, else null; as in lightbin_grid */
-    const lightbin_bin_range* bins;
-    uint64_t order_count, bin_count;
-} lightbin_bits;
-
-/* Writes a bitmask for each tile in place of lists: bit b of a tile's word w stands for the light with the id 32 w + b.
- * This is faster than lists up to about a thousand lights. Not with clusters.
- *
- * max_lights         all ids must be less. A tile has (max_lights + 31) / 32 words
- * words, word_count  the caller's memory, and how many words of 32 bits it has. Other words than the tiles' are not
- *                    written
- *
- * Errors: those of lightbin_bin() except for too many entries; LIGHTBIN_OPTIONS_NOT_TOGETHER, with clusters;
- * LIGHTBIN_BIT_BUFFER_TOO_SMALL; LIGHTBIN_IDS_TOO_NARROW, more lights than max_lights. After LIGHTBIN_OUT_OF_MEMORY
- * some of the words may have been written. */
-LIGHTBIN_API lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
-                                               const lightbin_lights* lights, const lightbin_inputs* inputs,
-                                               uint32_t max_lights, uint32_t* words, uint64_t word_count,
-                                               lightbin_bits* bits);
-
 /* What a light in view covers. */
 typedef struct lightbin_coverage {
     uint32_t id;             /* the light's id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too */
@@ -624,9 +569,9 @@ typedef struct lightbin_coverage {
     float pixels; /* larger side of the rectangle around its projection in the image, rounded up; +inf if unknown */
 } lightbin_coverage;
 
-/* Returns what each light in view covers, in ascending order of id, for the last lightbin_bin(),
- * lightbin_bin_transparency() or lightbin_bin_bits() of a binner made with lightbin_binner_options::coverage: for
- * shadow atlases and levels of detail. On success *lights refers to *count elements in memory of the binner, which is
+/* Returns what each light in view covers, in ascending order of id, for the last lightbin_bin() of
+ * a binner made with lightbin_binner_options::coverage: for shadow atlases and levels of detail. On success *lights
+ * refers to *count elements in memory of the binner, which is
  * valid until its next call. Errors: LIGHTBIN_COVERAGE_IS_OFF. */
 LIGHTBIN_API lightbin_result lightbin_binner_coverage(const lightbin_binner* binner,
                                                       const lightbin_coverage** lights, size_t* count);
@@ -727,8 +672,7 @@ LIGHTBIN_API lightbin_result lightbin_list_lengths(const lightbin_grid* grid, ui
 /* How the list of a tile is stored. */
 typedef enum lightbin_encoding {
     LIGHTBIN_OFFSET_COUNT = 0, /* a grid's ranges and one list of ids */
-    LIGHTBIN_SENTINEL = 1,     /* memory for `capacity` ids a tile; a shorter list ends with the largest id */
-    LIGHTBIN_BITMASK = 2       /* (max_lights + 31) / 32 words a tile */
+    LIGHTBIN_SENTINEL = 1      /* memory for `capacity` ids a tile; a shorter list ends with the largest id */
 } lightbin_encoding;
 
 typedef struct lightbin_format {
@@ -736,7 +680,6 @@ typedef struct lightbin_format {
     int32_t encoding;    /* a lightbin_encoding */
     int32_t ids;         /* a lightbin_ids */
     uint32_t capacity;   /* for SENTINEL: the ids that a tile has memory for, 1 or more */
-    uint32_t max_lights; /* all ids are less; BITMASK needs it, else 0 means as many as the ids can number */
 } lightbin_format;
 
 /* What lightbin_encode() left out of lists that are longer than the capacity of a sentinel format. */
@@ -754,8 +697,8 @@ LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* forma
 
 /* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
  * grid->ranges still index. Every list is complete, except that the sentinel format cuts lists that are longer than its
- * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN and LIGHTBIN_MAX_LIGHTS_UNKNOWN, of the format;
- * LIGHTBIN_IDS_TOO_NARROW, an id or max_lights is too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
+ * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN, of the format; LIGHTBIN_IDS_TOO_NARROW, an id is
+ * too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format,
                                              void* out, uint64_t out_bytes, lightbin_encoded* encoded);
 
@@ -828,8 +771,8 @@ typedef struct lightbin_shader lightbin_shader;
  * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
  * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
  * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
- * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_MAX_LIGHTS_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
- * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
+ * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW, of the format;
+ * LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
                                                      lightbin_shader** shader);
@@ -972,7 +915,7 @@ typedef struct lightbin_cull_options {
     int32_t count_in_buffer; /* not 0: the number of lights is read from the buffer `light_count` */
     uint32_t count_at;       /* with count_in_buffer: the index of the word that holds the number */
     int32_t ids;             /* LIGHTBIN_U32, or LIGHTBIN_U16: then each word of `lists` holds two ids */
-    int32_t depth_test;      /* a lightbin_depth_test; SPLIT_BOX is an error; with clusters, INTERVAL is, too */
+    int32_t depth_test;      /* not 0: test lights against the boxes around cells, as binners do */
     int32_t slicing;         /* LIGHTBIN_NO_SLICING or LIGHTBIN_CLUSTERS */
     /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
     int32_t max_only;
@@ -992,7 +935,7 @@ typedef struct lightbin_cull_options {
  * that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
  *
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
- * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER,
+ * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER,
  * LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                                   lightbin_shader** shader);
@@ -1035,8 +978,8 @@ typedef struct lightbin_cull_totals {
  * to_view   with world_space the matrix from world space to view space, else null
  *
  * Without clusters, the buffer `z_bounds` holds the minimum and maximum of each tile, as the shader of
- * lightbin_reduce_shader() writes them, and with BOX behind them what lightbin_shader_edges() writes. With clusters and
- * BOX, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges().
+ * lightbin_reduce_shader() writes them, and with a depth test behind them what lightbin_shader_edges() writes. With
+ * clusters and a depth test, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges().
  *
  * Errors: those of lightbin_cull_shader(); LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
  * LIGHTBIN_VIEW_MATRIX_DISTORTS, it is not close enough to a rotation with a uniform scale; LIGHTBIN_TOO_MANY_SLICES,
@@ -1052,8 +995,8 @@ typedef struct lightbin_edges {
     float low, high;
 } lightbin_edges;
 
-/* Write what the passes read in the buffer `z_bounds` with BOX: the two sides of each tile column and then of each tile
- * row; the depths of the slices. *count is their number. If the memory is too small, the error is
+/* Write what the passes read in the buffer `z_bounds` with a depth test: the two sides of each tile column and then of
+ * each tile row; the depths of the slices. *count is their number. If the memory is too small, the error is
  * LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
 LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges,
                                                    size_t capacity, size_t* count);

@@ -12,20 +12,17 @@ enum class ListEncoding : std::uint8_t {
     /// Memory for `capacity` ids per tile, so that no offsets are needed (Light Indexed Deferred Rendering). A shorter
     /// list ends with a sentinel, the largest value of the id's width.
     sentinel,
-    bitmask,  ///< (max_lights + 31) / 32 words of 32 bits per tile: bit b of word w is set for light 32 w + b
 };
 
 constexpr const char* to_string(ListEncoding encoding) {
-    return detail::name_at(encoding, {"offset_count", "sentinel", "bitmask"});
+    return detail::name_at(encoding, {"offset_count", "sentinel"});
 }
 
 /// The format of the lists: their encoding, and the numbers that fix its sizes.
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
-    IdWidth ids = IdWidth::u32;    ///< the width of an id in the encodings offset_count and sentinel
-    std::uint32_t capacity = 0;    ///< with ListEncoding::sentinel: how many ids each tile has memory for, 1 or more
-    /// Every id must be less. Required with ListEncoding::bitmask; else 0 allows all ids that IdWidth can hold.
-    std::uint32_t max_lights = 0;
+    IdWidth ids = IdWidth::u32;  ///< the width of an id
+    std::uint32_t capacity = 0;  ///< with ListEncoding::sentinel: how many ids each tile has memory for, 1 or more
 };
 
 }}  // namespace lightbin

@@ -29,21 +29,22 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
 /// the tile size or the room, only CullPlan::constants changes.
 ///
 /// options   of the texts; language, slots and prefix are not read
-/// slices    with clusters, else null. The buffer `slices` holds shader_slices(*slices). With DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view)
+/// slices    with clusters, else null. The buffer `slices` holds shader_slices(*slices). With a depth test, `z_bounds`
+///           holds shader_slabs(*slices) and behind it shader_edges(view)
 /// to_view   with options.world_space the matrix from world space to view space, else null
 ///
 /// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() (shader_reduce.hpp)
-/// writes them, and with DepthTest::box behind them shader_edges(view).
+/// writes them, and with a depth test behind them shader_edges(view).
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
 /// slices; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
 inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
                                   const Slices* slices = nullptr, const Matrix* to_view = nullptr);
 
-/// Returns the two sides of each tile column and then of each tile row, which the passes read with DepthTest::box.
+/// Returns the two sides of each tile column and then of each tile row, which the passes read with a depth test.
 inline std::vector<ShaderEdges> shader_edges(const View& view);
 
-/// Returns the depths of the slices, which the passes read with clusters and DepthTest::box. They include the slices'
+/// Returns the depths of the slices, which the passes read with clusters and a depth test. They include the slices'
 /// margin (see Slices::with_margin()).
 inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 

@@ -13,21 +13,12 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 struct ZBounds {
     std::span<const float> min = {};
     std::span<const float> max = {};
-    /// Read by DepthTest::split_box; both spans must be given, or neither. Nothing is drawn in a tile at depths
-    /// strictly between gap_min and gap_max. A tile with gap_min >= gap_max, or NaN in either, has no gap.
-    std::span<const float> gap_min = {};
-    std::span<const float> gap_max = {};
-    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, as
-    /// transparent geometry is also seen in front of the background. If empty, `max` is used.
-    std::span<const float> transparent_max = {};
-    /// `min`, `max` and the gaps were made without the background. bin_transparency() then requires transparent_max.
-    bool background_skipped = false;
 };
 
 /// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, else an
-/// empty span. A tile's gap, depths where nothing is drawn, is written if gap_min and gap_max are both given.
+/// empty span.
 struct ZBoundsBuffers {
-    std::span<float> min = {}, max = {}, gap_min = {}, gap_max = {}, transparent_max = {};
+    std::span<float> min = {}, max = {};
 };
 
 /// The number format of a depth buffer. It decides by how much reduce_depth() widens the bounds to allow for rounding:
@@ -53,8 +44,8 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is
-    /// drawn, and which counts for ZBounds::transparent_max alone. Right for buffers that were cleared to that value
-    /// and drawn with a strict depth comparison.
+    /// drawn. Right for buffers that were cleared to that value and drawn with a strict depth comparison, and for
+    /// lights of opaque surfaces alone: transparent ones are seen in front of the background, too.
     bool skip_background = false;
 };
 
@@ -85,14 +76,14 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
 /// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies
 /// within its tile's bounds, which are rounded outward and widened by the rounding of the DepthFormat. A tile where
 /// nothing is drawn has min = +inf and max = -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach
-/// from the near to the far plane. A tile's gap lies between the samples next to the middle of its depth range.
+/// from the near to the far plane.
 ///
 /// isa  use no wider instructions than these; the result is the same
 ///
 /// Errors: a sample count outside 1 to 8; a row pitch shorter than a row; too few samples; an `out` span that is
 /// neither empty nor as long as View::tile_count().
 ///
-/// Sources: Tiled Shading, section 6.3; for gaps, Harada, "A 2.5D Culling for Forward+", SIGGRAPH Asia 2012.
+/// Source: Tiled Shading, section 6.3.
 inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                                     Isa isa = compiled_isa) {
     const detail::DefaultFloatEnvironment environment;
@@ -109,13 +100,13 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const std::uint64_t needed = tiles == 0 ? 0 : detail::sum_of_sizes(before_last, row);
     if (buffer.depth.size() < needed)
         return Error{ErrorCode::depth_buffer_too_small, needed, buffer.depth.size()};
-    for (const std::span<float> side : {out.min, out.max, out.gap_min, out.gap_max, out.transparent_max})
+    for (const std::span<float> side : {out.min, out.max})
         if (!side.empty() && side.size() < tiles)
             return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
 
-    constexpr float none = std::numeric_limits<float>::quiet_NaN();
-    const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
-    const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
+    const float skipped = !buffer.skip_background  ? std::numeric_limits<float>::quiet_NaN()
+                          : view.reversed_z() ? 0.0f
+                                              : 1.0f;
     // A tile larger than the viewport is treated as one of its size, so that the products below do not overflow.
     const std::size_t size = static_cast<std::size_t>(
         detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
@@ -125,50 +116,17 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
         const detail::DepthRows samples = {buffer.depth.data() + y * pitch, pitch,
                                            detail::min_of(size, height - y), row};
-        detail::reduce_tile_row<false>(
-            isa, samples, size * samples_a_pixel, skipped, nullptr,
-            [&](std::size_t tile, detail::Extremes range) {
+        detail::reduce_tile_row(
+            isa, samples, size * samples_a_pixel, skipped, [&](std::size_t tile, detail::Extremes range) {
                 const DepthInterval depths = detail::fragment_depths(view, range, buffer.format);
                 if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
                 if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
-                // Until the second pass, gap_min holds the window depth at which the tile is split: the middle of its
-                // depth range, or NaN where a sample is NaN, so that the tile gets no gap.
-                const double middle =
-                    0.5 * (static_cast<double>(depths.min) + static_cast<double>(depths.max));
-                if (gaps)
-                    out.gap_min[first_tile + tile] =
-                        range.lower > -detail::infinity ? view.window_depth(middle) : none;
-            });
-        if (!out.transparent_max.empty())
-            detail::reduce_tile_row<false>(
-                isa, samples, size * samples_a_pixel, none, nullptr, [&](std::size_t tile, detail::Extremes range) {
-                    out.transparent_max[first_tile + tile] = detail::fragment_depths(view, range, buffer.format).max;
-                });
-        if (!gaps) continue;
-        detail::reduce_tile_row<true>(
-            isa, samples, size * samples_a_pixel, skipped, out.gap_min.data() + first_tile,
-            [&](std::size_t tile, detail::Extremes next) {
-                // The view depths of the samples on either side of the tile's gap, a range of depths without samples:
-                // below and above it in window depth. They are infinite if the tile has no gap.
-                DepthInterval below = {-detail::infinity, detail::infinity}, above = below;
-                if (next.upper > -detail::infinity && next.lower < detail::infinity) {
-                    below = detail::fragment_depths(view, {next.upper, next.upper}, buffer.format);
-                    above = detail::fragment_depths(view, {next.lower, next.lower}, buffer.format);
-                }
-                if (view.reversed_z()) std::swap(below, above);
-                out.gap_min[first_tile + tile] = below.max;
-                out.gap_max[first_tile + tile] = above.min;
             });
     }
     const auto given = [&](std::span<float> side) {
         return side.empty() ? std::span<const float>{} : std::span<const float>(side.data(), tiles);
     };
-    return ZBounds{.min = given(out.min),
-                   .max = given(out.max),
-                   .gap_min = gaps ? given(out.gap_min) : given({}),
-                   .gap_max = gaps ? given(out.gap_max) : given({}),
-                   .transparent_max = given(out.transparent_max),
-                   .background_skipped = buffer.skip_background};
+    return ZBounds{.min = given(out.min), .max = given(out.max)};
 }
 
 }}  // namespace lightbin

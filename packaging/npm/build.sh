@@ -40,7 +40,7 @@ module() {
 }
 # Modules with vectors are only loaded where there are vectors. Text, which few programs ask for, and not in each frame,
 # has a module of its own.
-left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY COVERAGE)
+left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS COVERAGE)
 small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
 vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
 text='lightbin_(view_text|shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'

@@ -160,15 +160,14 @@ export interface Slices extends Disposable {
     at(depth: number): number;
     /** The content of the shader text's buffer `slices`. */
     shaderWords(): Uint32Array;
-    /** What cullShader() reads with clusters and `box` in place of Z bounds. */
+    /** What cullShader() reads with clusters and a depth test in place of Z bounds. */
     shaderSlabs(): Float32Array;
 }
 
 export interface BinnerOptions {
     ids?: 'u32' | 'u16';
-    footprint?: 'rectangle' | 'silhouette';
-    /** interval and box read Z bounds, but with clusters box does not. */
-    depthTest?: 'no-depth-test' | 'interval' | 'box';
+    /** Whether lights are tested against the box around each cell. Needs Z bounds or, without these, clusters. */
+    depthTest?: boolean;
     slicing?: Slicing;
 }
 
@@ -176,7 +175,6 @@ export interface BinnerOptions {
 export interface ZBounds {
     min?: FloatArray;
     max?: FloatArray;
-    backgroundSkipped?: boolean;
 }
 
 /** What the binner's options read, and no others. */
@@ -185,25 +183,22 @@ export interface Inputs {
     bounds?: ZBounds;
 }
 
-interface Counts {
-    /** How many lights were given, are bad input, and are outside of the view or switched off. */
-    readonly lights: number, rejected: number, culled: number;
-    /** With z-bins: for each rank the light's id, and two numbers for each bin, the least and greatest rank. */
-    readonly order: Uint32Array, bins: Uint32Array;
-    readonly tilesX: number, tilesY: number;
-}
-
 /**
  * The lists. The arrays are the module's memory. They hold until the binner's next call, and are read anew from the
  * object after each call to the module, as they are empty when its memory has grown.
  */
-export interface Grid extends Counts {
+export interface Grid {
+    /** How many lights were given, are bad input, and are outside of the view. */
+    readonly lights: number, rejected: number, culled: number;
+    readonly tilesX: number, tilesY: number;
     /** 1 unless made with clusters. */
     readonly slices: number;
     /** {offset, count}, two numbers a list: tilesX * tilesY lists, row-major; with clusters as many a slice. */
     readonly ranges: Uint32Array;
     readonly ids: Uint32Array | Uint16Array;
     readonly idBytes: number;
+    /** With z-bins: for each rank the light's id, and two numbers for each bin, the least and greatest rank. */
+    readonly order: Uint32Array, bins: Uint32Array;
     /** Ids below firstSpot are spheres, from there to firstBox spots, others boxes. */
     readonly firstSpot: number, firstBox: number;
     /** Writes the lists in another format; with 'offset-count' the ids alone, which `ranges` still index. The data hold
@@ -223,27 +218,17 @@ export interface Grid extends Counts {
     countEntries(): Uint32Array;
 }
 
-/** Bitmasks, which hold as the arrays of a Grid do. */
-export interface Bits extends Counts {
-    readonly words: Uint32Array;
-    readonly wordsPerTile: number;
-}
-
 /** Bins lights into tiles, and keeps the memory that this takes. */
 export interface Binner extends Disposable {
     /** Makes the lists of the lights in a view. Each call returns the same object, with the new lists. */
     bin(view: View, lights: Lights, inputs?: Inputs): Grid;
-    /** Makes a bitmask a tile instead, Math.ceil(maxLights / 32) words each. Not with clusters. */
-    bits(view: View, lights: Lights, maxLights: number, inputs?: Inputs): Bits;
 }
 
 export interface ListFormat {
-    encoding?: 'offset-count' | 'sentinel' | 'bitmask';
+    encoding?: 'offset-count' | 'sentinel';
     ids?: 'u32' | 'u16' | 'u8';
     /** For sentinel: the ids that a tile has memory for. */
     capacity?: number;
-    /** All ids are less; bitmask needs it. */
-    maxLights?: number;
 }
 
 export interface Slot {
@@ -326,8 +311,7 @@ export interface CullShaderOptions {
     countInBuffer?: boolean;
     countAt?: number;
     ids?: 'u32' | 'u16';
-    /** interval not with clusters. */
-    depthTest?: 'no-depth-test' | 'interval' | 'box';
+    depthTest?: boolean;
     slicing?: 'no-slicing' | 'clusters';
     maxOnly?: boolean;
     orthographic?: boolean;

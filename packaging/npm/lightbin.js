@@ -320,12 +320,11 @@ class Core {
     }
 
     bounds(given, what) {
-        const {backgroundSkipped, ...all} = only(given, ['min', 'max', 'backgroundSkipped'], what);
-        const bounds = Object.entries(all).filter(([, array]) => array != null);
+        const bounds = Object.entries(only(given, ['min', 'max'], what)).filter(([, array]) => array != null);
         for (const [key, array] of bounds)
             if (!is_array(array)) refuse(`${what}.${key} must be an array of floats`);
         const tiles = bounds.length > 0 ? Math.min(...bounds.map(([, array]) => array.length)) : 0;
-        const at = this.place('zBounds', {tiles, backgroundSkipped}, what);
+        const at = this.place('zBounds', {tiles}, what);
         for (const [key, array] of bounds)
             this.stage(array, `${what}.${key}`, at + structs.zBounds.members[key][1], 0, tiles);
         return at;
@@ -537,18 +536,16 @@ function slices_of(core, boundaries, margin = 0) {
     });
 }
 
-// A member of lightbin_grid or lightbin_bits that is an array: its address and length are members of these names.
+// A member of lightbin_grid that is an array: its address and length are members of these names.
 const array_of = {
     ranges: grid => 2 * grid.rangeCount, ids: grid => grid.idCount, order: grid => grid.orderCount,
-    bins: grid => 2 * grid.binCount, words: grid => grid.wordCount,
+    bins: grid => 2 * grid.binCount,
 };
 const nothing = {
     tilesX: 0, tilesY: 0, slices: 0, lights: 0, rejected: 0, culled: 0, ranges: 0, ids: 0, rangeCount: 0, idCount: 0,
-    idBytes: 4, firstSpot: 0, firstBox: 0, order: 0, bins: 0, orderCount: 0, binCount: 0, words: 0, wordCount: 0,
-    wordsPerTile: 0,
+    idBytes: 4, firstSpot: 0, firstBox: 0, order: 0, bins: 0, orderCount: 0, binCount: 0,
 };
-const own_members = ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'firstSpot', 'firstBox',
-                     'wordsPerTile'];
+const own_members = ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'firstSpot', 'firstBox'];
 
 /// The lists of a binner's call, read from the module's memory.
 class Lists {
@@ -576,10 +573,9 @@ class Lists {
     get ids() { return this.#array('ids'); }
     get order() { return this.#array('order'); }
     get bins() { return this.#array('bins'); }
-    get words() { return this.#array('words'); }
     /// Writes the lightbin_grid: to the stack, or to where another was.
     #placed(at) {
-        const {size, wordsPerTile, words, wordCount, ...members} = this.#raw;
+        const {size, ...members} = this.#raw;
         return this.#core.place('grid', members, 'grid', at);
     }
     encode(format) {
@@ -645,16 +641,12 @@ class Lists {
 class Binner extends Held {
     #core;
     #encoded;
-    #words;
     #grid;
-    #bits;
     constructor(core, options) {
         super(core, 'binner');
         this.#core = core;
         this.#encoded = new Block(core);
-        this.#words = new Block(core);
         this.#grid = new Lists(core, this.#encoded);
-        this.#bits = new Lists(core, this.#encoded);
         this[address] = core.scope(c => core.create(c.lightbin_binner_create,
             core.place('binnerOptions', options, 'options')));
     }
@@ -664,18 +656,6 @@ class Binner extends Held {
             const grid = core.place('grid');
             core.check(c.lightbin_bin, ...given, grid);
             return this.#grid.set(core.read('grid', grid, {...nothing}));
-        });
-    }
-    bits(view, lights, max_lights, inputs) {
-        const core = this.#core;
-        whole(max_lights, 'maxLights', 'uint32_t');
-        return this.#call(view, lights, inputs, (c, ...given) => {
-            const {tilesX = 0, tilesY = 0} = view?.info ?? {}, wordsPerTile = Math.ceil(max_lights / 32);
-            const count = tilesX * tilesY * wordsPerTile;
-            const bits = core.place('bits'), words = this.#words.reserve(4 * Math.max(count, 1));
-            core.check(c.lightbin_bin_bits, ...given, max_lights, words, BigInt(count), bits);
-            return this.#bits.set(core.read('bits', bits,
-                {...nothing, tilesX, tilesY, words, wordCount: count, wordsPerTile}));
         });
     }
     #call(view, lights, inputs, body) {
@@ -690,12 +670,10 @@ class Binner extends Held {
     dispose() {
         this.#core.c.lightbin_binner_destroy(this[release]());
         this.#encoded.free();
-        this.#words.free();
         this.#forget();
     }
     #forget() {
         this.#grid.set(nothing);
-        this.#bits.set(nothing);
     }
 }
 

@@ -3,8 +3,8 @@ import type {AppBase} from 'playcanvas';
 import type {Grid, Lightbin} from './lightbin.js';
 
 export interface ClusteredLightsOptions {
-    /** 'box' makes shorter lists, in some three times the time. Default: 'no-depth-test'. */
-    depthTest?: 'no-depth-test' | 'box';
+    /** Makes shorter lists, in some three times the time. Default: false. */
+    depthTest?: boolean;
 }
 
 /**

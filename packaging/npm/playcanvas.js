@@ -70,7 +70,7 @@ export class ClusteredLights {
     #texels;  // of a light in PlayCanvas' texture
     #warnings = new Set();
 
-    constructor(lightbin, app, {depthTest = 'no-depth-test', ...others} = {}) {
+    constructor(lightbin, app, {depthTest = false, ...others} = {}) {
         for (const key in others) throw new Error(`options: there is no '${key}', but depthTest`);
         const device = app.graphicsDevice, {empty} = app.renderer.worldClustersAllocator;
         if (updates.has(device)) throw new Error('this application has ClusteredLights');

@@ -14,7 +14,7 @@ const kebab = name => name.toLowerCase().replaceAll('_', '-');
 const bare = type => type.replace(/^lightbin_/, '');
 
 // Values that the package, or the function that is given them, always refuses.
-const never = /^(depth_test\.split-box|cull_kind\.box)$/;
+const never = /^cull_kind\.box$/;
 
 const enums = {};
 for (const [, name, body] of header.matchAll(/typedef enum lightbin_(\w+) \{(.*?)\} lightbin_\1;/gs))
@@ -58,7 +58,7 @@ for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.
 }
 
 // Members that the package leaves out, so that JavaScript refuses their names.
-const left_out = /^(unused.*|isa|coverage|threads|gap_min|gap_max|transparent_max)$/;
+const left_out = /^(unused.*|isa|coverage|threads)$/;
 
 const used = new Set(Object.keys(structs).filter(named)), used_enums = new Set();
 for (const name of used)  // which grows as structs in structs are found

@@ -9,9 +9,8 @@ export interface ClusteredLightsOptions {
     slices?: number;
     /** The view depth at which the first slice ends. Default: between the camera's near and far planes. */
     firstSlice?: number;
-    /** Default: 'box', which makes shorter lists in more time. */
-    depthTest?: 'no-depth-test' | 'box';
-    footprint?: 'rectangle' | 'silhouette';
+    /** Default: true, which makes shorter lists in more time. */
+    depthTest?: boolean;
     /**
      * Lights without an end (`distance` 0) are drawn as three.js draws them with the distance at which their strongest
      * channel has fallen to the cutoff: (color * intensity / cutoff) ** (1 / decay). In lux, for intensities in

@@ -77,15 +77,13 @@ export class ClusteredLights {
     #key = `lightbin ${++made}`;
     #uniforms = {};
 
-    constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = 'box', footprint = 'rectangle',
-                           cutoff = 0, ...others} = {}) {
+    constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = true, cutoff = 0, ...others} = {}) {
         for (const key in others)
-            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, footprint, `
-                + 'cutoff');
+            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, cutoff`);
         if (!(cutoff >= 0 && cutoff < Infinity)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
         this.#lightbin = lightbin;
         this.#options = {slices, firstSlice, cutoff};
-        this.#binner = lightbin.binner({slicing: 'clusters', depthTest, footprint});
+        this.#binner = lightbin.binner({slicing: 'clusters', depthTest});
         this.#view = lightbin.view({...one_pixel, tileSize});
         lightbin.linearSlices({count: slices, begin: 0, end: 1}).dispose();  // refuses a wrong number
         this.update = this.update.bind(this);

@@ -267,7 +267,7 @@ static void test_slices(void) {
 
 static void test_binners(void) {
     lightbin_view_options view_given = view_options();
-    lightbin_binner_options options = options_given(LIGHTBIN_NO_DEPTH_TEST, LIGHTBIN_NO_SLICING);
+    lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
     lightbin_lights lights = lights_given();
     lightbin_grid grid = empty_grid(), other = empty_grid();
     lightbin_inputs inputs;
@@ -276,26 +276,20 @@ static void test_binners(void) {
     lightbin_binner *binner = NULL, *boxes = NULL;
     lightbin_view* view = NULL;
     lightbin_slices* slices = NULL;
-    lightbin_bits bits;
-    uint32_t* words;
     uint32_t* ids;
     lightbin_range ranges[tile_count];
     float not_affine[16];
     int calls = 0;
     CLEAR(inputs);
     CLEAR(threads);
-    CLEAR(bits);
     memset(not_affine, 0, sizeof not_affine);
 
     CHECK(refuses(lightbin_binner_create(NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "binner"));
     options.ids = LIGHTBIN_U8;
     CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.ids"));
-    options = options_given(4, LIGHTBIN_NO_SLICING);
-    CHECK(
-        refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.depth_test"));
-    options = options_given(LIGHTBIN_INTERVAL, LIGHTBIN_CLUSTERS);
-    CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_OPTIONS_NOT_TOGETHER, "options"));
-    options = options_given(LIGHTBIN_BOX, LIGHTBIN_NO_SLICING);
+    options = options_given(1, 3);
+    CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.slicing"));
+    options = options_given(1, LIGHTBIN_NO_SLICING);
     CHECK(binner == NULL);
     CHECK(lightbin_binner_create(NULL, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(&options, &boxes).error == LIGHTBIN_OK);
@@ -349,25 +343,6 @@ static void test_binners(void) {
     threads.workers = 4;
     CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_OK);
     CHECK(calls > 0);
-    bounds.background_skipped = 1;
-    CHECK(lightbin_bin_transparency(boxes, view, &lights, &inputs, &grid, &other).error ==
-          LIGHTBIN_NO_TRANSPARENT_MAX);
-    CHECK(refuses(lightbin_bin_transparency(binner, view, &lights, NULL, &grid, &other),
-                  LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner"));
-
-    words = (uint32_t*)calloc(tile_count * 10, sizeof *words);
-    CHECK(words != NULL);
-    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 300, words, 9, &bits).error ==
-          LIGHTBIN_BIT_BUFFER_TOO_SMALL);
-    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 200, words, tile_count * 10, &bits).error ==
-          LIGHTBIN_IDS_TOO_NARROW);
-    CHECK(refuses(lightbin_bin_bits(binner, view, &lights, NULL, 300, NULL, 9, &bits), LIGHTBIN_NULL_ARGUMENT,
-                  "words"));
-    CHECK(words[0] == 0);
-    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 300, words, tile_count * 10, &bits).error ==
-          LIGHTBIN_OK);
-    CHECK(bits.lights == light_count);
-    free(words);
 
     /* The caller's memory, copies and encodings. */
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
@@ -395,7 +370,7 @@ static void test_binners(void) {
         CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_NOT_A_VALUE, "format"));
         format.ids = LIGHTBIN_U8;
         format.encoding = LIGHTBIN_SENTINEL;
-        CHECK(lightbin_encode(&grid, &format, words = NULL, 0, &encoded).error == LIGHTBIN_CAPACITY_UNKNOWN);
+        CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_CAPACITY_UNKNOWN);
         format.capacity = 4;
         CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_LIST_BUFFER_TOO_SMALL);
         CHECK(refuses(lightbin_encode(&grid, &format, NULL, 9, &encoded), LIGHTBIN_NULL_ARGUMENT, "out"));
@@ -468,7 +443,7 @@ static void test_shapes(void) {
 /* What is made of finished grids: coverage, counts, kinds, budgets, unions, several views. */
 static void test_grids(void) {
     lightbin_view_options view_given = view_options();
-    lightbin_binner_options options = options_given(LIGHTBIN_NO_DEPTH_TEST, LIGHTBIN_NO_SLICING);
+    lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
     lightbin_lights lights = lights_given();
     lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
     lightbin_binner *binner = NULL, *plain = NULL, *sixteen = NULL;
@@ -638,7 +613,7 @@ static void test_depth(void) {
     CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
     out.tiles = tile_count;
     CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_OK);
-    CHECK(bounds.min == min && bounds.max == max && bounds.gap_min == NULL && bounds.tiles == tile_count);
+    CHECK(bounds.min == min && bounds.max == max && bounds.tiles == tile_count);
     lightbin_view_destroy(view);
 }
 
@@ -773,7 +748,7 @@ static lightbin_result use_everything(uint64_t* sum) {
     if (result.error == LIGHTBIN_OK)
         result = lightbin_slices_exponential(slice_count, 2, 50, 0.01f, &slices);
     if (result.error == LIGHTBIN_OK) result = lightbin_shader_snippet(&snippet, &shader);
-    for (test = LIGHTBIN_NO_DEPTH_TEST; test <= LIGHTBIN_SPLIT_BOX; ++test)
+    for (test = 0; test <= 1; ++test)
         for (slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
             lightbin_binner_options options = options_given(test, slicing);
             lightbin_binner* binner = NULL;
@@ -788,9 +763,7 @@ static lightbin_result use_everything(uint64_t* sum) {
             threads.user = &calls;
             inputs.threads = &threads;
             if (slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
-            if (test != LIGHTBIN_NO_DEPTH_TEST && slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;
-            options.footprint = test % 2;
-            if (slicing == LIGHTBIN_CLUSTERS && test % 2 == 1) continue;
+            if (test != 0 && slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;
             if (result.error == LIGHTBIN_OK) result = lightbin_binner_create(&options, &binner);
             if (result.error == LIGHTBIN_OK) {
                 result = lightbin_bin(binner, view, &lights, &inputs, &grid);

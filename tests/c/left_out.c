@@ -21,13 +21,12 @@ static void works(lightbin_result result) {
     exit(EXIT_FAILURE);
 }
 
-static lightbin_result create(int ids, int footprint, int depth_test, int slicing, int coverage) {
+static lightbin_result create(int ids, int depth_test, int slicing, int coverage) {
     lightbin_binner* binner = NULL;
     lightbin_binner_options options;
     memset(&options, 0, sizeof options);
     options.size = sizeof options;
     options.ids = ids;
-    options.footprint = footprint;
     options.depth_test = depth_test;
     options.slicing = slicing;
     options.coverage = coverage;
@@ -65,13 +64,10 @@ int main(void) {
     works(lightbin_bin(binner, view, &given, NULL, &grid));
     if (grid.range_count != 16 || grid.id_count == 0) return EXIT_FAILURE;
 
-    refuses(create(LIGHTBIN_U16, 0, 0, 0, 0), "LIGHTBIN_NO_U16");
-    refuses(create(0, LIGHTBIN_SILHOUETTE, 0, 0, 0), "LIGHTBIN_NO_SILHOUETTES");
-    refuses(create(0, 0, LIGHTBIN_INTERVAL, 0, 0), "LIGHTBIN_NO_INTERVAL");
-    refuses(create(0, 0, LIGHTBIN_BOX, 0, 0), "LIGHTBIN_NO_BOX");
-    refuses(create(0, 0, LIGHTBIN_SPLIT_BOX, 0, 0), "LIGHTBIN_NO_SPLIT_BOX");
-    refuses(create(0, 0, 0, LIGHTBIN_CLUSTERS, 0), "LIGHTBIN_NO_CLUSTERS");
-    refuses(create(0, 0, 0, LIGHTBIN_Z_BINS, 0), "LIGHTBIN_NO_Z_BINS");
+    refuses(create(LIGHTBIN_U16, 0, 0, 0), "LIGHTBIN_NO_U16");
+    refuses(create(0, 1, 0, 0), "LIGHTBIN_NO_DEPTH_TEST");
+    refuses(create(0, 0, LIGHTBIN_CLUSTERS, 0), "LIGHTBIN_NO_CLUSTERS");
+    refuses(create(0, 0, LIGHTBIN_Z_BINS, 0), "LIGHTBIN_NO_Z_BINS");
     {
         lightbin_inputs inputs;
         lightbin_threads threads;
@@ -95,7 +91,7 @@ int main(void) {
     given.boxes.half_axes.first = half_axes;
     refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
     works(lightbin_tube_sphere(lights, lights + 4, 1, &sphere));
-    refuses(create(0, 0, 0, 0, 1), "LIGHTBIN_NO_COVERAGE");
+    refuses(create(0, 0, 0, 1), "LIGHTBIN_NO_COVERAGE");
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
     puts("every check passed");

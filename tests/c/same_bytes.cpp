@@ -60,7 +60,7 @@ struct Scene {
     float projection[16] = {}, view_matrix[16] = {};
     int width, height, tile_size;
     std::vector<Lamp> lamps;
-    std::vector<float> min, max, gap_min, gap_max, transparent_max, boundaries;
+    std::vector<float> min, max, boundaries;
 
     explicit Scene(Random& random) {
         width = random.integer(1, 700), height = random.integer(1, 500), tile_size = random.integer(4, 40);
@@ -96,9 +96,6 @@ struct Scene {
         for (std::size_t i = 0; i < tiles; ++i) {
             min.push_back(random.real(0.1f, 40));
             max.push_back(min.back() + random.real(-0.5f, 30));
-            gap_min.push_back(min.back() + random.real(0, 5));
-            gap_max.push_back(gap_min.back() + random.real(-1, 20));
-            transparent_max.push_back(max.back() + random.real(0, 20));
         }
         for (float depth = random.real(1, 5); boundaries.size() < 12; depth += random.real(0.5f, 9))
             boundaries.push_back(depth);
@@ -322,13 +319,12 @@ Owned<lightbin_binner> binner_of(const lightbin_binner_options* options) {
 /// One set of options on both sides, for several scenes.
 template <Options options> void compare_sides() {
     using Read = typename Binner<options>::Inputs;
-    Random random(1000 * static_cast<unsigned>(options.ids) + 100 * static_cast<unsigned>(options.footprint) +
-                  10 * static_cast<unsigned>(options.depth_test) + static_cast<unsigned>(options.slicing));
+    Random random(1000 * static_cast<unsigned>(options.ids) + 10 * static_cast<unsigned>(options.depth_test) +
+                  static_cast<unsigned>(options.slicing));
     Binner<options> expected;
     lightbin_binner_options asked = {sizeof asked,
                                      options.ids == IdWidth::u16 ? LIGHTBIN_U16 : LIGHTBIN_U32,
-                                     static_cast<std::int32_t>(options.footprint),
-                                     static_cast<std::int32_t>(options.depth_test),
+                                     options.depth_test,
                                      static_cast<std::int32_t>(options.slicing),
                                      options.coverage,
                                      LIGHTBIN_WIDEST};
@@ -347,11 +343,8 @@ template <Options options> void compare_sides() {
         const Slices cpp_slices = Slices::from_boundaries(scene.boundaries)->with_margin(margin);
         auto bounds = sized<lightbin_z_bounds>();
         bounds.min = scene.min.data(), bounds.max = scene.max.data();
-        bounds.gap_min = scene.gap_min.data(), bounds.gap_max = scene.gap_max.data();
-        bounds.transparent_max = scene.transparent_max.data();
         bounds.tiles = scene.min.size();
-        const ZBounds cpp_bounds = {scene.min, scene.max, scene.gap_min, scene.gap_max,
-                                    scene.transparent_max};
+        const ZBounds cpp_bounds = {scene.min, scene.max};
         int calls = 0;
         lightbin_threads threads = {sizeof threads, 3, run_tasks, &calls};
         auto inputs = sized<lightbin_inputs>();
@@ -383,29 +376,6 @@ template <Options options> void compare_sides() {
                             LIGHTBIN_OK);
                     CHECK(equal(expected.coverage(), covered, covered_count));
                 }
-                if constexpr (Read::reads_bounds) {
-                    lightbin_grid transparent = grid;
-                    const lightbin_result both = lightbin_bin_transparency(binner.get(), view.get(), &lights,
-                                                                           &inputs, &grid, &transparent);
-                    REQUIRE_MESSAGE(both.error == LIGHTBIN_OK, text(both));
-                    const auto grids = *expected.bin_transparency(cpp_view, cpp_lights, cpp_inputs);
-                    compare(grids.opaque, grid);
-                    compare(grids.transparent, transparent);
-                }
-                if constexpr (options.slicing != Slicing::clusters) {
-                    const auto most = static_cast<std::uint32_t>(scene.lamps.size());
-                    const std::size_t words = cpp_view.tile_count() * ((most + 31) / 32);
-                    std::vector<std::uint32_t> bits(words, 7), cpp_bits(words);
-                    auto counts = sized<lightbin_bits>();
-                    const lightbin_result masks = lightbin_bin_bits(
-                        binner.get(), view.get(), &lights, &inputs, most, bits.data(), bits.size(), &counts);
-                    REQUIRE_MESSAGE(masks.error == LIGHTBIN_OK, text(masks));
-                    const LightBits made_bits =
-                        *expected.bin_bits(cpp_view, cpp_lights, most, cpp_bits, cpp_inputs);
-                    CHECK(bits == cpp_bits);
-                    CHECK(counts.culled == made_bits.counts.culled);
-                    CHECK(equal(made_bits.ranks.order, counts.order, counts.order_count));
-                }
             };
             const auto world = matrix(scene.view_matrix, MatrixLayout::column_major);
             const auto part = [&](std::size_t begin, std::size_t end, const auto& to_light) {
@@ -434,7 +404,6 @@ template <Options options> void compare_sides() {
 /// Compares both widths of ids, and with 16 bits what lights cover.
 template <Options options> void compare_ids() {
     constexpr Options narrow = {.ids = IdWidth::u16,
-                                .footprint = options.footprint,
                                 .depth_test = options.depth_test,
                                 .slicing = options.slicing,
                                 .coverage = true};
@@ -442,30 +411,15 @@ template <Options options> void compare_ids() {
     compare_sides<narrow>();
 }
 
-template <Footprint footprint> void compare_footprint() {
-    compare_ids<Options{.footprint = footprint}>();
-    compare_ids<Options{.footprint = footprint, .depth_test = DepthTest::interval}>();
-    compare_ids<Options{.footprint = footprint, .depth_test = DepthTest::box}>();
-    compare_ids<Options{.footprint = footprint, .depth_test = DepthTest::split_box}>();
-    compare_ids<Options{.footprint = footprint, .slicing = Slicing::clusters}>();
-    compare_ids<Options{
-        .footprint = footprint, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-    compare_ids<Options{.footprint = footprint, .slicing = Slicing::z_bins}>();
-    compare_ids<Options{
-        .footprint = footprint, .depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
-    compare_ids<Options{.footprint = footprint, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
-    compare_ids<Options{
-        .footprint = footprint, .depth_test = DepthTest::split_box, .slicing = Slicing::z_bins}>();
-}
-
 }  // namespace
 
-TEST_CASE("C: rectangles are binned as in C++, with all other options") {
-    compare_footprint<Footprint::rectangle>();
-}
-
-TEST_CASE("C: silhouettes are binned as in C++, with all other options") {
-    compare_footprint<Footprint::silhouette>();
+TEST_CASE("C: lights are binned as in C++, with all options") {
+    compare_ids<Options{}>();
+    compare_ids<Options{.depth_test = true}>();
+    compare_ids<Options{.slicing = Slicing::clusters}>();
+    compare_ids<Options{.depth_test = true, .slicing = Slicing::clusters}>();
+    compare_ids<Options{.slicing = Slicing::z_bins}>();
+    compare_ids<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
 }
 
 TEST_CASE("C: arrays of vec4s and separate arrays give the same lists") {
@@ -531,12 +485,11 @@ TEST_CASE("C: encodings and list lengths are those of C++") {
                             view_space(scene.lamps, [&](const Lamp& lamp) { return scene.sphere(lamp); }));
         for (const ListFormat& cpp_format :
              {ListFormat{.ids = IdWidth::u16},
-              ListFormat{.encoding = ListEncoding::sentinel, .ids = IdWidth::u16, .capacity = 5},
-              ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 1000}}) {
+              ListFormat{.encoding = ListEncoding::sentinel, .ids = IdWidth::u16, .capacity = 5}}) {
             const lightbin_format format = {
                 sizeof format, static_cast<std::int32_t>(cpp_format.encoding),
                 cpp_format.ids == IdWidth::u32 ? LIGHTBIN_U32 : static_cast<std::int32_t>(cpp_format.ids),
-                cpp_format.capacity, cpp_format.max_lights};
+                cpp_format.capacity};
             std::uint64_t bytes = 0;
             REQUIRE(lightbin_encoded_bytes(&format, grid.range_count, grid.id_count, &bytes).error ==
                     LIGHTBIN_OK);
@@ -569,17 +522,11 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
         for (float& sample : depth)
             sample = random.integer(0, 3) == 0 ? 1 : random.real(0.5f, 1);
         const std::size_t tiles = scene.min.size();
-        std::vector<float> made(5 * tiles), expected(5 * tiles);
+        std::vector<float> made(2 * tiles), expected(2 * tiles);
         const lightbin_depth_buffer buffer = {sizeof buffer, samples,  depth.data(), depth.size(), 0,
                                               round % 3,     round % 2};
-        const lightbin_z_bounds_buffers out = {sizeof out,
-                                               round % (lightbin_machine_isa() + 1),
-                                               made.data(),
-                                               made.data() + tiles,
-                                               made.data() + 2 * tiles,
-                                               made.data() + 3 * tiles,
-                                               made.data() + 4 * tiles,
-                                               tiles};
+        const lightbin_z_bounds_buffers out = {sizeof out, round % (lightbin_machine_isa() + 1), made.data(),
+                                               made.data() + tiles, tiles};
         auto bounds = sized<lightbin_z_bounds>();
         const lightbin_result result = lightbin_reduce_depth(view.get(), &buffer, &out, &bounds);
         REQUIRE_MESSAGE(result.error == LIGHTBIN_OK, text(result));
@@ -589,11 +536,10 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
                                            .samples = samples,
                                            .format = static_cast<DepthFormat>(round % 3),
                                            .skip_background = round % 2 != 0},
-                                          {part(0), part(1), part(2), part(3), part(4)});
+                                          {part(0), part(1)});
         REQUIRE(reduced);
         CHECK(std::memcmp(made.data(), expected.data(), made.size() * sizeof(float)) == 0);
-        CHECK(bounds.transparent_max == made.data() + 4 * tiles);
-        CHECK((bounds.background_skipped != 0) == reduced->background_skipped);
+        CHECK((bounds.min == made.data() && bounds.max == made.data() + tiles));
     }
 }
 
@@ -736,7 +682,7 @@ struct CullOptions {
         both(c.kind, cpp.kind, LIGHTBIN_CULL_SPHERE, any ? LIGHTBIN_CULL_BOX : LIGHTBIN_CULL_SPOT);
         both(c.world_space, cpp.world_space, 0, 1);
         both(c.count_in_buffer, cpp.count_in_buffer, 0, 1);
-        both(c.depth_test, cpp.depth_test, LIGHTBIN_NO_DEPTH_TEST, any ? LIGHTBIN_SPLIT_BOX : LIGHTBIN_BOX);
+        both(c.depth_test, cpp.depth_test, 0, 1);
         both(c.slicing, cpp.slicing, LIGHTBIN_NO_SLICING, any ? LIGHTBIN_Z_BINS : LIGHTBIN_CLUSTERS);
         both(c.max_only, cpp.max_only, 0, 1);
         both(c.orthographic, cpp.orthographic, 0, 1);

@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         scene.skip_background = bytes.flag();
         fill(scene.depth, pixels, bytes, aim);
     } else {
-        for (auto* side : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max})
+        for (auto* side : {&scene.min, &scene.max})
             fill(*side, tiles, bytes, aim);
     }
     while (!bytes.empty() && scene.lights.size() < 200)

@@ -144,7 +144,7 @@ lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     lightbin_cull_options options = {};
     options.language = take_number(bytes, 8), options.pass = take_number(bytes, 5);
     options.kind = take_number(bytes, 3), options.ids = take_number(bytes, 3);
-    options.depth_test = take_number(bytes, 4), options.slicing = take_number(bytes, 3);
+    options.depth_test = bytes.flag(), options.slicing = take_number(bytes, 3);
     options.prefix = prefix;
     if (bytes.flag())
         for (std::uint32_t* word : {&options.stride, &options.centre, &options.radius, &options.axis,
@@ -170,18 +170,15 @@ bool deserve(std::int32_t error, const lightbin_cull_options& options) {
     switch (error) {
     case LIGHTBIN_NOT_A_VALUE:
         return outside(options.language, 7) || outside(options.pass, 4) || outside(options.kind, 2) ||
-               outside(options.ids, 2) || outside(options.depth_test, 3) || outside(options.slicing, 2);
+               outside(options.ids, 2) || outside(options.slicing, 2);
     case LIGHTBIN_NO_STORAGE_BUFFERS:
         return options.language == LIGHTBIN_GLSL_330 || options.language == LIGHTBIN_ESSL_300;
     case LIGHTBIN_NO_CULL_OF_BOXES:
         return options.kind == LIGHTBIN_CULL_BOX;
     case LIGHTBIN_IDS_TOO_NARROW:
         return options.ids == LIGHTBIN_U8;
-    case LIGHTBIN_NO_SPLIT_BOX_SHADER:
-        return options.depth_test == LIGHTBIN_SPLIT_BOX;
     case LIGHTBIN_NO_SUCH_SLICING_SHADER:
-        return options.slicing == LIGHTBIN_Z_BINS ||
-               (options.slicing == LIGHTBIN_CLUSTERS && options.depth_test == LIGHTBIN_INTERVAL);
+        return options.slicing == LIGHTBIN_Z_BINS;
     default:
         return false;
     }
@@ -192,8 +189,8 @@ bool deserve(std::int32_t error, const lightbin_cull_options& options) {
 bool judged(const lightbin_result& result, const Sized<lightbin_cull_options>& options,
                std::initializer_list<std::int32_t> others) {
     static constexpr std::int32_t of_options[] = {
-        LIGHTBIN_NOT_A_VALUE,    LIGHTBIN_NO_STORAGE_BUFFERS,  LIGHTBIN_NO_CULL_OF_BOXES,
-        LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SPLIT_BOX_SHADER, LIGHTBIN_NO_SUCH_SLICING_SHADER};
+        LIGHTBIN_NOT_A_VALUE, LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW,
+        LIGHTBIN_NO_SUCH_SLICING_SHADER};
     const bool fine = judged(result);
     if (!options.whole()) return fine;  // what is cut off counts as 0
     if (!fine)
@@ -329,8 +326,7 @@ void use_calls(Bytes bytes) {
                                           static_cast<float>(bytes.byte()) / 500, &slices));
     lightbin_binner_options options = {};
     options.size = sizeof options;
-    options.ids = take_number(bytes, 3), options.footprint = take_number(bytes, 2);
-    options.depth_test = take_number(bytes, 4), options.slicing = take_number(bytes, 3);
+    options.ids = take_number(bytes, 3), options.depth_test = bytes.flag(), options.slicing = take_number(bytes, 3);
     options.coverage = bytes.flag();
     succeeded(lightbin_binner_create(&options, &binner));
 
@@ -382,18 +378,18 @@ void use_calls(Bytes bytes) {
         lightbin_inputs inputs = {};
         inputs.size = sizeof inputs;
         const bool reads_bounds =
-            options.depth_test != LIGHTBIN_NO_DEPTH_TEST && options.slicing != LIGHTBIN_CLUSTERS;
+            options.depth_test != 0 && options.slicing != LIGHTBIN_CLUSTERS;
         if (bytes.byte() > 240 || options.slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
         if (bytes.byte() > 240 || reads_bounds) inputs.bounds = &bounds;
         if (bytes.flag()) inputs.threads = &threads;
-        lightbin_grid grid = {}, other = {};
-        grid.size = other.size = sizeof grid;
+        lightbin_grid grid = {};
+        grid.size = sizeof grid;
         if (succeeded(lightbin_bin(binner, view, &lights, bytes.byte() > 250 ? nullptr : &inputs, &grid))) {
             require(grid.lights == lights.spheres.count + lights.spots.count + lights.boxes.count,
                     "lights were lost");
             check_grid(grid);
             lightbin_format format = {sizeof format, take_number(bytes, 3), take_number(bytes, 3),
-                                      bytes.byte() % 9u, bytes.byte()};
+                                      bytes.byte() % 9u};
             lightbin_encoded encoded = {};
             encoded.size = sizeof encoded;
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
@@ -409,17 +405,6 @@ void use_calls(Bytes bytes) {
             if (succeeded(lightbin_copy_grid(&grid, ranges.data(), ranges.size(), ids.data(), grid.id_count)))
                 check_grid(grid);
         }
-        if (succeeded(lightbin_bin_transparency(binner, view, &lights, &inputs, &grid, &other))) {
-            check_grid(grid);
-            check_grid(other);
-        }
-        lightbin_bits bits = {};
-        bits.size = sizeof bits;
-        const std::uint32_t most = bytes.byte() % 64;
-        std::vector<std::uint32_t> words(tiles * ((most + 31) / 32));
-        if (succeeded(
-                lightbin_bin_bits(binner, view, &lights, &inputs, most, words.data(), words.size(), &bits)))
-            require(bits.lights == grid.lights || bits.lights <= 46, "lights were lost");
         left += bytes.byte();
     }
     lightbin_budget_destroy(budget);

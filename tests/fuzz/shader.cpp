@@ -266,10 +266,9 @@ void fuzz_snippet(Bytes& bytes) {
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.storage = take_enum(bytes, ListStorage::byte_address);
-    options.format.encoding = take_enum(bytes, ListEncoding::bitmask);
+    options.format.encoding = take_enum(bytes, ListEncoding::sentinel);
     options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
     options.format.capacity = take_size(bytes);
-    options.format.max_lights = take_size(bytes);
     const unsigned flags = bytes.byte();
     options.tiles_in_uniform_block = (flags & 1) != 0;
     options.packed_ids = (flags & 2) != 0;
@@ -297,7 +296,6 @@ void fuzz_snippet(Bytes& bytes) {
     const ListFormat& format = options.format;
     const Language language(options.language);
     const bool table = format.encoding == ListEncoding::offset_count,
-               bits = format.encoding == ListEncoding::bitmask,
                lists_in_block = options.storage == ListStorage::uniform_block,
                tiles_in_block = table && (lists_in_block || options.tiles_in_uniform_block);
     const auto refuse_if = [&](bool condition, ErrorCode code) {
@@ -315,18 +313,13 @@ void fuzz_snippet(Bytes& bytes) {
                   (options.texture_width == 0 || options.texture_width > 16384),
               ErrorCode::texture_width_out_of_range);
     // Sizes in double: those that it cannot hold are far too large anyway.
-    const double id_bytes = static_cast<double>(format.ids), tiles = options.max_tiles,
-                 ids = std::exp2(8 * id_bytes) - (table ? 0 : 1);
-    refuse_if(!bits && format.max_lights > ids, ErrorCode::ids_too_narrow);
+    const double id_bytes = static_cast<double>(format.ids), tiles = options.max_tiles;
     refuse_if(format.encoding == ListEncoding::sentinel && format.capacity == 0, ErrorCode::capacity_unknown);
-    refuse_if(bits && format.max_lights == 0, ErrorCode::max_lights_unknown);
     refuse_if((lists_in_block || tiles_in_block) && tiles == 0, ErrorCode::block_size_unknown);
     refuse_if(lists_in_block && table && options.max_entries == 0, ErrorCode::block_size_unknown);
     const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
     refuse_if(lists_in_block && sliced && options.max_slices == 0, ErrorCode::block_size_unknown);
-    const double list_bytes = bits    ? tiles * 4 * std::ceil(format.max_lights / 32.0)
-                              : table ? options.max_entries * id_bytes
-                                      : tiles * format.capacity * id_bytes;
+    const double list_bytes = table ? options.max_entries * id_bytes : tiles * format.capacity * id_bytes;
     question.block_bytes =
         language.hlsl ? std::min(options.uniform_block_bytes, 65536u) : options.uniform_block_bytes;
     const auto too_large = [&](double size) { return std::ceil(size / 16) * 16 > question.block_bytes; };
@@ -390,8 +383,7 @@ std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) 
     };
     const bool project = pass == CullPass::project, fill = pass == CullPass::fill;
     want(project, "lights", options.lights);
-    want((pass == CullPass::count || fill) && options.depth_test != DepthTest::none, "z_bounds",
-         options.z_bounds);
+    want((pass == CullPass::count || fill) && options.depth_test, "z_bounds", options.z_bounds);
     want(true, "scratch", options.scratch);
     want(project && options.slicing != Slicing::none, "slices", options.slices);
     want(project && options.count_in_buffer, "light_count", options.light_count);
@@ -494,7 +486,7 @@ void fuzz_cull(Bytes& bytes) {
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
     const CullPass pass = take_enum(bytes, CullPass::fill);
-    options.depth_test = take_enum(bytes, DepthTest::split_box);
+    options.depth_test = bytes.flag();
     const unsigned flags = bytes.byte();
     options.max_only = (flags & 1) != 0;
     options.orthographic = (flags & 2) != 0;
@@ -514,10 +506,7 @@ void fuzz_cull(Bytes& bytes) {
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.kind == CullKind::box) question.reasons.insert(ErrorCode::no_cull_of_boxes);
     if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
-    if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
-    if (options.slicing == Slicing::z_bins ||
-        (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval))
-        question.reasons.insert(ErrorCode::no_such_slicing_shader);
+    if (options.slicing == Slicing::z_bins) question.reasons.insert(ErrorCode::no_such_slicing_shader);
     question.constants_in_block = true;
     question.constants.resize(options.world_space ? 13 : 8);
     question.wanted = buffers_of(pass, options);

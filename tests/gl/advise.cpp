@@ -22,7 +22,6 @@
 #include <random>
 #include <vector>
 
-using lightbin::DepthTest;
 using lightbin::Slicing;
 
 namespace {
@@ -145,17 +144,15 @@ TEST_CASE("evaluations are those that the renderer counts of the picture that it
                        draw_depth_on_cpu(scene, glm::dmat4(projection) * world_to_view, {320, 200}));
         costs.set({.evaluation_ns = 1, .upload_byte_ns = 0});
 
-        const auto plan = [](DepthTest test, Slicing slicing) {
-            return Way{.plan = {.depth_test = test, .slicing = slicing, .tile_size = 16}};
+        const auto plan = [](bool depth_test, Slicing slicing) {
+            return Way{.plan = {.depth_test = depth_test, .slicing = slicing, .tile_size = 16}};
         };
-        const Way plain = plan(DepthTest::none, Slicing::none),
-                  interval = plan(DepthTest::interval, Slicing::none),
-                  z_bins = plan(DepthTest::none, Slicing::z_bins),
-                  clusters = plan(DepthTest::box, Slicing::clusters);
-        Way narrow = plain, threads = plain, spheres = plain, minimum = interval, maximum = interval;
+        const Way plain = plan(false, Slicing::none), bounded = plan(true, Slicing::none),
+                  z_bins = plan(false, Slicing::z_bins), clusters = plan(true, Slicing::clusters);
+        Way narrow = plain, threads = plain, spheres = plain, minimum = bounded, maximum = bounded;
         narrow.narrow_ids = threads.threads = true;
         spheres.cones = minimum.maximum = maximum.minimum = false;
-        const std::vector<Way> ways = {plain,   interval, z_bins,  clusters, narrow,
+        const std::vector<Way> ways = {plain,   bounded, z_bins,  clusters, narrow,
                                        threads, spheres,  minimum, maximum,  {.plan = {.tiled = false}}};
         const std::vector<WayCost> measured = costs.measure(ways);
         REQUIRE(measured.size() == ways.size());
@@ -188,9 +185,7 @@ TEST_CASE("evaluations are those that the renderer counts of the picture that it
         for (const lightbin::Plan& advised : advice.plans()) {
             if (!advised.tiled || advised.tile_size != 16 || advised.has_z_bounds()) continue;
             for (std::size_t i = 0; i < 4; ++i)
-                if (advised.slicing == ways[i].plan.slicing &&
-                    advised.depth_test == ways[i].plan.depth_test &&
-                    advised.footprint == lightbin::Footprint::rectangle)
+                if (advised.slicing == ways[i].plan.slicing && advised.depth_test == ways[i].plan.depth_test)
                     CHECK(std::fabs(advised.evaluations / measured[i].shade - 1) < 0.1);
         }
     }

@@ -16,8 +16,7 @@ awk '
 function complain(what) { print "WRONG: " what; bad = 1 }
 length($0) > 100 { complain("more than 100 columns: " $0) }
 BEGIN {
-    count = split("tiles,pre-pass,minimum,maximum,box,split boxes,clusters,z-bins,silhouettes,16-bit ids,threads,cones",
-                  parts, ",")
+    count = split("tiles,pre-pass,minimum,maximum,depth test,clusters,z-bins,16-bit ids,threads,cones", parts, ",")
 }
 in_code { code = code $0 "\n"; next }
 /^code$/ { in_code = 1; next }
@@ -58,9 +57,9 @@ END {
         if (heads[names[i]] != 1) complain("no line of " names[i])
     if (total == "" || advised == "" || code == "") complain("something is missing")
     if (kept["pre-pass"] && kept["clusters"]) complain("a pre-pass and clusters")
-    has(advised, "tiles= px, |silhouettes=silhouette|box=box|split boxes=split_box|clusters=clusters|z-bins=z_bins")
+    has(advised, "tiles= px|depth test=depth test|clusters=clusters|z-bins=z_bins")
     size = ".tile_size = " advised + 0 "}"
-    has(code, "tiles={" size "|tiles=, " size "|silhouettes=Footprint::silhouette|split boxes=DepthTest::split_box")
+    has(code, "tiles={" size "|tiles=, " size "|depth test=.depth_test = true")
     has(code, "clusters=Slicing::clusters|z-bins=Slicing::z_bins|pre-pass=.bounds = |minimum= min|maximum=max = max")
     has(code, "16-bit ids=IdWidth::u16|threads=lightbin::Parallel|cones=to_spot")
     exit bad

@@ -66,13 +66,13 @@ template <class Exception> bool throws(std::size_t& left, std::size_t place, con
 struct Input {
     View view;
     std::vector<glm::vec4> lights;
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> min, max;
     Slices slices;
 
     Input(Extent viewport, int tile_size, std::size_t count, float largest)
         : view(*View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), viewport,
                                       {.tile_size = tile_size})),
-          lights(count), min(view.tile_count(), 5), max(min), gap_min(min), gap_max(min),
+          lights(count), min(view.tile_count(), 5), max(min),
           slices(*Slices::linear(static_cast<int>(count), 0, 40)) {
         std::mt19937 random(7);
         const auto from_to = [&](float low, float high) {
@@ -82,13 +82,11 @@ struct Input {
             light = {from_to(-20, 20), from_to(-15, 15), from_to(-40, 1), from_to(0, largest)};
         for (std::size_t i = 0; i < min.size(); ++i) {
             min[i] = from_to(1, 10);
-            gap_min[i] = min[i] + from_to(1, 5);
-            gap_max[i] = gap_min[i] + from_to(1, 5);
-            max[i] = gap_max[i] + from_to(1, 10);
+            max[i] = min[i] + from_to(2, 15);
         }
     }
 
-    ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
+    ZBounds bounds() const { return {min, max}; }
 };
 
 /// The bytes of what a Binner makes of a scene, one call after another.
@@ -105,30 +103,20 @@ struct Bytes {
     }
 };
 
-enum class Call { bin, bin_transparency };
-
 template <Options options>
-void use(Binner<options>& binner, Call call, const Input& scene, const Parallel& parallel, Bytes* bytes) {
-    const auto lights = view_space(scene.lights, as_sphere);
+void use(Binner<options>& binner, const Input& scene, const Parallel& parallel, Bytes* bytes) {
     const auto inputs = inputs_for<options>(scene.bounds(), scene.slices);
-    if (call == Call::bin) {
-        const auto grid = binner.bin(scene.view, lights, inputs, parallel);
-        if (bytes != nullptr) bytes->add(*grid);
-    } else if constexpr (options.depth_test != DepthTest::none && options.slicing != Slicing::clusters) {
-        const auto grids = binner.bin_transparency(scene.view, lights, inputs, parallel);
-        if (bytes != nullptr) bytes->add(grids->opaque);
-        if (bytes != nullptr) bytes->add(grids->transparent);
-    }
+    const auto grid = binner.bin(scene.view, view_space(scene.lights, as_sphere), inputs, parallel);
+    if (bytes != nullptr) bytes->add(*grid);
 }
 
 template <Options options> struct Survival {
     const Input &scene, &less;
-    Call call;
     Parallel parallel;
 
     std::vector<std::uint32_t> made(Binner<options>& binner, const Input& of) const {
         Bytes bytes;
-        use(binner, call, of, parallel, &bytes);
+        use(binner, of, parallel, &bytes);
         return bytes.words;
     }
 
@@ -140,8 +128,8 @@ template <Options options> struct Survival {
         for (const bool warm : {false, true})
             for (std::size_t place = 1;; place += step) {
                 Binner<options> binner;
-                if (warm) use(binner, call, less, parallel, nullptr);
-                if (!throws<Exception>(left, place, [&] { use(binner, call, scene, parallel, nullptr); }))
+                if (warm) use(binner, less, parallel, nullptr);
+                if (!throws<Exception>(left, place, [&] { use(binner, scene, parallel, nullptr); }))
                     break;
                 const bool less_first = ++places % 2 == 0;
                 const bool right = (!less_first || made(binner, less) == expected_less) &&
@@ -156,16 +144,11 @@ template <Options options> struct Survival {
 
 template <Options options> void check_options(const Input& scene, const Input& less, bool all = true) {
     CAPTURE(static_cast<int>(options.isa));
-    for (const Call call : {Call::bin, Call::bin_transparency}) {
-        if (call == Call::bin_transparency &&
-            (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters))
-            continue;
-        for (const std::size_t workers : {1u, 3u}) {
-            const Survival<options> survival{scene, less, call, Parallel(workers, run)};
-            CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
-            if (!all) continue;
-            CHECK(survival.template everywhere<Thrown>(events_left, 37) >= 2 * (scene.lights.size() / 37));
-        }
+    for (const std::size_t workers : {1u, 3u}) {
+        const Survival<options> survival{scene, less, Parallel(workers, run)};
+        CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
+        if (!all) continue;
+        CHECK(survival.template everywhere<Thrown>(events_left, 37) >= 2 * (scene.lights.size() / 37));
     }
 }
 
@@ -176,17 +159,10 @@ template <Isa isa> void check_tier() {
     check_options<Options{.isa = isa}>(scene, less);
     check_options<Options{.isa = isa}>(scattered, less, false);
     check_options<Options{.isa = isa}>(wide, less, false);
-    check_options<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .isa = isa}>(scene, less,
-                                                                                                false);
-    check_options<Options{.depth_test = DepthTest::box, .isa = isa}>(scene, less, false);
-    check_options<Options{.ids = IdWidth::u16,
-                          .footprint = Footprint::silhouette,
-                          .depth_test = DepthTest::split_box,
-                          .isa = isa}>(scene, less);
+    check_options<Options{.ids = IdWidth::u16, .depth_test = true, .isa = isa}>(scene, less);
     check_options<Options{.slicing = Slicing::z_bins, .isa = isa}>(scene, less, false);
-    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins, .isa = isa}>(scene, less, false);
-    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .isa = isa}>(scattered, less,
-                                                                                                   false);
+    check_options<Options{.depth_test = true, .slicing = Slicing::z_bins, .isa = isa}>(scene, less, false);
+    check_options<Options{.depth_test = true, .slicing = Slicing::clusters, .isa = isa}>(scattered, less, false);
 }
 
 /// Every allocation of a function that keeps nothing.
@@ -220,7 +196,7 @@ TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bi
     for (std::size_t i = 1; i < scene.lights.size(); ++i)
         if (i % 1000 != 0) scene.lights[i].z = 50;  // behind the eye
     for (const std::size_t workers : {1u, 3u}) {
-        const Survival<Options{}> survival{scene, less, Call::bin, Parallel(workers, run)};
+        const Survival<Options{}> survival{scene, less, Parallel(workers, run)};
         CHECK(survival.everywhere<std::bad_alloc>(allocations_left) > 10);
     }
 }
@@ -233,8 +209,7 @@ TEST_CASE("what keeps nothing from call to call loses nothing, either") {
             advice.text().substr(0, 4);  // times differ from call to call, and so does the order
         for (const int tile_size : {8, 16, 32, 64, 320})
             for (const Plan& plan : advice.plans())
-                if (plan.tile_size == tile_size && plan.footprint == Footprint::rectangle &&
-                    plan.depth_test == DepthTest::box)
+                if (plan.tile_size == tile_size && plan.depth_test)
                     entries += std::to_string(plan.entries) + " ";
         return entries;
     });

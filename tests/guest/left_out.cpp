@@ -18,22 +18,15 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
             body(i);
         }
     };
-    lightbin::Binner<lightbin::Options{.footprint = lightbin::Footprint::silhouette,
-                                       .depth_test = lightbin::DepthTest::split_box,
-                                       .coverage = true}>
-        binner;
+    lightbin::Binner<lightbin::Options{.depth_test = true, .coverage = true}> binner;
     const auto grid = binner.bin(view, lights, {.bounds = bounds}, lightbin::Parallel(4, loop));
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
-                                       .slicing = lightbin::Slicing::clusters}>
-        cluster_binner;
+    lightbin::Binner<lightbin::Options{.depth_test = true, .slicing = lightbin::Slicing::clusters}> cluster_binner;
     const auto clusters = cluster_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> ranking_binner;
     const auto ranked = ranking_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
-    const auto bits =
-        ranking_binner.bin_bits(view, lights, 0, {}, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     lightbin::Budget<> budget;
     const auto limited = budget.limit(*clusters, {}, {.per_cell = 9});
-    return grid && clusters && ranked && bits && limited
+    return grid && clusters && ranked && limited
                ? grid->ids().size() + binner.coverage().size() + clusters->ids().size() + ranked->ids().size()
                : 0;
 #else

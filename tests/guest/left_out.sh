@@ -15,10 +15,10 @@ compile -O0 -DALL_OPTIONS -o "$work/on.o"
 nm -C "$work/off.o" >"$work/off"
 nm -C "$work/on.o" >"$work/on"
 
-# Functions of the depth tests, of silhouettes, of sharing work among threads, of slices, of coverage, of budgets. The Binner with all
+# Functions of the depth test, of sharing work among threads, of slices, of coverage, of budgets. The Binner with all
 # options has each of them: a name that is nowhere would prove nothing.
-for function in tiles_met arrange_cells store_box tile_edges find_edges mask_lights row_spans row_terms \
-    silhouette_tiles share_rows share_steps build_shares SlicedFootprints RankedFootprints SliceTable::find \
+for function in tiles_met arrange_cells store_boxes tile_edges find_edges mask_lights share_rows share_steps \
+    build_shares SlicedFootprints RankedFootprints SliceTable::find \
     find_depth_buckets arrange_slab store_met_boxes tiles_across CoverageList Budget; do
     grep -qw "$function" "$work/on" || { echo "no $function with all options on" >&2; exit 1; }
     if grep -w "$function" "$work/off"; then
@@ -33,7 +33,7 @@ if [ "$(uname -m)" = x86_64 ]; then
         compile -O0 -march=x86-64-v2 -DALL_OPTIONS -DLIGHTBIN_NO_$define -o "$work/no_$define.o"
         nm -C "$work/no_$define.o" >"$work/no_$define"
     done
-    for kernel in project_lights row_spans count_entries bin_blocks write_bits find_depth_buckets; do
+    for kernel in project_lights count_entries bin_blocks find_depth_buckets; do
         grep -q "::scalar::$kernel\>" "$work/no_SIMD" || { echo "there is no scalar $kernel" >&2; exit 1; }
         if grep "::scalar::$kernel\>" "$work/no_SCALAR"; then
             echo "a scalar $kernel is there with LIGHTBIN_NO_SCALAR" >&2

@@ -82,18 +82,15 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     hash.add(lengths.longest);
     for (const std::uint64_t tiles : lengths.histogram)
         hash.add(tiles);
-    if constexpr (options.depth_test == DepthTest::none) {
+    if constexpr (options.depth_test) {
+        hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));
+    } else {
         hash.add(value_of(binner.bin(view, lights)));
         hash.add(value_of(binner.bin(view, lights, {})));
-    } else {
-        hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));
-        const auto grids = value_of(binner.bin_transparency(view, lights, {.bounds = bounds}));
-        hash.add(grids.opaque);
-        hash.add(grids.transparent);
     }
 }
 
-template <DepthTest depth_test>
+template <bool depth_test>
 void use_all_options(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
     use_binner<Options{.ids = IdWidth::u16, .depth_test = depth_test}>(hash, view, lights, bounds);
     use_binner<Options{.ids = IdWidth::u32, .depth_test = depth_test}>(hash, view, lights, bounds);
@@ -101,13 +98,12 @@ void use_all_options(Hash& hash, const View& view, const auto& lights, const ZBo
 
 void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
     use_binner<Options{}>(hash, view, lights, bounds);
-    use_binner<Options{.depth_test = DepthTest::interval}>(hash, view, lights, bounds);
+    use_binner<Options{.depth_test = true}>(hash, view, lights, bounds);
 }
 
 void use_encodings(Hash& hash, const auto& grid) {
     for (const ListFormat& format :
-         {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u16, 9},
-          ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 200}}) {
+         {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u16, 9}}) {
         std::vector<std::byte> bytes(
             static_cast<std::size_t>(encoded_bytes(format, grid.ranges().size(), grid.ids().size())));
         hash.add(value_of(encode(grid, format, bytes)).entries_cut);
@@ -186,14 +182,12 @@ void use_view(Hash& hash, const View& view) {
 
     const std::size_t pixels =
         static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
-    std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count()),
-        transparent_max(view.tile_count());
+    std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count());
     for (std::size_t i = 0; i < depth.size(); ++i)
         depth[i] = static_cast<float>(i % 1000) / 1000.0f;
     DepthBuffer buffer{.depth = depth, .samples = 2};
     buffer.format = DepthFormat::unorm24;
-    const ZBounds bounds =
-        value_of(reduce_depth(view, buffer, {.min = min, .max = max, .transparent_max = transparent_max}));
+    const ZBounds bounds = value_of(reduce_depth(view, buffer, {.min = min, .max = max}));
 
     std::vector<Sphere> spheres;
     std::vector<glm::vec4> vectors;
@@ -229,12 +223,8 @@ void use_view(Hash& hash, const View& view) {
     use_coverage(hash, view, world_space(vectors, camera, to_spot), weights);
     use_advice(hash, view, spheres, bounds);
     use_advice(hash, view, world_space(lamps, identity, to_light), {});
-    use_all_options<DepthTest::none>(hash, view, spheres, bounds);
-    use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
-    use_binner<Options{.footprint = Footprint::silhouette}>(hash, view, spheres, bounds);
-    use_binner<Options{.ids = IdWidth::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
-    use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
-        hash, view, spheres, {min, max, min, max});
+    use_all_options<false>(hash, view, spheres, bounds);
+    use_all_options<true>(hash, view, spheres, bounds);
     const std::vector<Spot> spots = {to_spot(vectors[0]), to_spot(vectors[1]), Spot::whole(spheres[2])};
     const glm::vec3 up(0, 1, 0), along(0, 0, -1);
     const std::vector<Box> boxes = {whole_box(corner, side, up, along),
@@ -246,7 +236,7 @@ void use_view(Hash& hash, const View& view) {
     const auto all = lights(spheres, spots, world_space(boxes, camera));
     use_lights(hash, view, boxes, bounds);
     use_lights(hash, view, lights(spots, boxes), bounds);
-    use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(hash, view, all, bounds);
+    use_binner<Options{.depth_test = true}>(hash, view, all, bounds);
     while (weights.size() < spheres.size() + spots.size() + boxes.size())
         weights.push_back(1);
     use_coverage(hash, view, all, weights);

@@ -34,11 +34,10 @@ ratio() {
 }
 # shellcheck disable=SC2016  # Markdown's backquotes
 {
-    ratio docs/depth.md '`DepthTest::box`, 16-pixel tiles' box 16
-    ratio docs/depth.md '`DepthTest::split_box` |' split_box 16
-    ratio docs/depth.md '`Slicing::clusters` with `DepthTest::box`' clusters+box 64
+    ratio docs/depth.md '`depth_test`, 16-pixel tiles' box 16
+    ratio docs/depth.md '`Slicing::clusters` with `depth_test`' clusters+box 64
     ratio docs/depth.md '`Slicing::z_bins`, 1,024 bins' z-bins 32
-    has docs/depth.md '`Footprint::silhouette`' "$(of silhouette 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
+    has docs/depth.md 'no depth method, 16-pixel tiles' "$(of plain 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
 }
 
 # row LINE METHOD TILE COLUMN: a row of the table in bench/README.md
@@ -46,7 +45,7 @@ row() {
     has bench/README.md "| $1 | " "| $1 | $(of "$2" "$3" "$4" |
         awk '{ printf "%s%.*f", NR == 1 ? "" : " | ", $1 < 99.95 ? 1 : 0, $1 }') |"
 }
-for way in plain:16 silhouette:16 interval:16 box:16 split_box:16 clusters:64 clusters+box:64 z-bins:32; do
+for way in plain:16 box:16 clusters:64 clusters+box:64 z-bins:32; do
     row "${way%:*}, ${way#*:} px" "${way%:*}" "${way#*:}" evals
 done
 row needed plain 16 needed

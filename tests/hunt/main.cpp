@@ -23,7 +23,6 @@
 namespace hunt {
 namespace {
 
-using lightbin::DepthTest;
 using lightbin::Isa;
 using lightbin::Slicing;
 
@@ -35,24 +34,21 @@ struct Placed {
 };
 
 struct Bounds {
-    lightbin::ZBounds spans() const { return {sides[0], sides[1], sides[2], sides[3]}; }
+    lightbin::ZBounds spans() const { return {sides[0], sides[1]}; }
 
-    std::vector<float> sides[4];  ///< minimum, maximum, and those of the gap
+    std::vector<float> sides[2];  ///< minimum and maximum
 };
 
 /// Returns whether the bounds of a tile, beyond doubt, include a depth.
-bool surely_within(const Bounds& bounds, bool with_gaps, std::size_t tile, Real depth) {
-    const auto& [min, max, gap_min, gap_max] = bounds.sides;
+bool surely_within(const Bounds& bounds, std::size_t tile, Real depth) {
+    const auto& [min, max] = bounds.sides;
     if (!min.empty() && !max.empty() && min[tile] > max[tile]) return false;
     const auto tests = [&](const std::vector<float>& side) { return !side.empty() && !std::isnan(side[tile]); };
     if (tests(min) && !surely_at_most(static_cast<Long>(min[tile]), depth)) return false;
-    if (tests(max) && !surely_at_most(depth, static_cast<Long>(max[tile]))) return false;
-    if (!with_gaps || !tests(gap_min) || !tests(gap_max) || gap_min[tile] >= gap_max[tile]) return true;
-    return surely_at_most(depth, static_cast<Long>(gap_min[tile])) ||
-           surely_at_most(static_cast<Long>(gap_max[tile]), depth);
+    return !tests(max) || surely_at_most(depth, static_cast<Long>(max[tile]));
 }
 
-/// Makes Z bounds as a caller may have them: both, one or none, with gaps or without. Those of a tile hold two of the
+/// Makes Z bounds as a caller may have them: both, one or none. Those of a tile hold two of the
 /// points in the tile, or one, and hardly more; where there is no point they are as for nothing drawn, or for anything.
 /// Now and then they are floats that nobody would pass.
 Bounds make_bounds(const lightbin::View& view, const std::vector<Placed>& points, Random& random) {
@@ -60,18 +56,18 @@ Bounds make_bounds(const lightbin::View& view, const std::vector<Placed>& points
     const std::size_t tiles = view.tile_count(), size = tiles + (random.coin() ? 0 : random.below(std::size_t{70}));
     const bool nasty = random.one_in(6);
     const int absent = random.below(6);  // a side, or none
-    for (int i = 0; i < 4; ++i)
-        if (absent != 5 && absent != i && (i < 2 || random.coin())) bounds.sides[i].resize(size, 7.0f);
-    const auto set = [&](std::size_t tile, std::initializer_list<float> values) {
-        for (int i = 0; i < static_cast<int>(values.size()); ++i)
+    for (int i = 0; i < 2; ++i)
+        if (absent != 5 && absent != i) bounds.sides[i].resize(size, 7.0f);
+    const auto set = [&](std::size_t tile, float min, float max) {
+        for (int i = 0; i < 2; ++i)
             if (!bounds.sides[i].empty())
-                bounds.sides[i][tile] = nasty && random.one_in(3) ? nasty_float(random) : values.begin()[i];
+                bounds.sides[i][tile] = nasty && random.one_in(3) ? nasty_float(random) : i == 0 ? min : max;
     };
     for (std::size_t tile = 0; tile < tiles; ++tile)
         if (random.one_in(3))
-            set(tile, {infinite, -infinite, 0, 0});
+            set(tile, infinite, -infinite);
         else
-            set(tile, {view.near_depth(), view.far_depth(), 0, 0});
+            set(tile, view.near_depth(), view.far_depth());
     std::vector<std::pair<std::size_t, std::size_t>> by_tile;
     for (std::size_t i = 0; i < points.size(); ++i)
         by_tile.emplace_back(points[i].tile, i);
@@ -83,9 +79,7 @@ Bounds make_bounds(const lightbin::View& view, const std::vector<Placed>& points
         const auto depth = [&] { return points[by_tile[begin + random.below(end - begin)].second].seen.depth; };
         Real least = depth(), most = random.one_in(4) ? least : depth();
         if (most.value < least.value) std::swap(least, most);
-        const bool gap_alone = random.one_in(8);
-        set(tile, {gap_alone ? -infinite : float_down(least.low()), gap_alone ? infinite : float_up(most.high()),
-                   float_up(least.high()), float_down(most.low())});
+        set(tile, float_down(least.low()), float_up(most.high()));
     }
     return bounds;
 }
@@ -178,43 +172,28 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
 
 /// A Binner's options, compiled for each instruction set.
 struct BinnerKind {
-    lightbin::Footprint footprint;
-    DepthTest depth_test;
+    bool depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bins[4])(const Input&);
     std::uint64_t points = 0;  ///< that were looked for
 
-    template <lightbin::Footprint footprint, DepthTest depth_test, Slicing slicing = Slicing::none>
-    static BinnerKind of() {
+    template <bool depth_test, Slicing slicing> static BinnerKind of() {
         constexpr auto on = [](Isa isa) {
-            return lightbin::Options{.footprint = footprint, .depth_test = depth_test, .slicing = slicing, .isa = isa};
+            return lightbin::Options{.depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
-        return {footprint,
-                depth_test,
+        return {depth_test,
                 slicing,
                 {bin<on(Isa::scalar)>, bin<on(Isa::simd128)>, bin<on(Isa::avx2)>, bin<on(lightbin::compiled_isa)>}};
     }
     std::string name() const {
-        return std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + to_string(slicing);
+        return std::string(depth_test ? "depth test, " : "") + to_string(slicing);
     }
 };
 
 std::vector<BinnerKind> binner_kinds() {
-    using enum lightbin::Footprint;
-    using enum DepthTest;
-    return {BinnerKind::of<rectangle, none>(),
-            BinnerKind::of<rectangle, interval>(),
-            BinnerKind::of<rectangle, box>(),
-            BinnerKind::of<rectangle, split_box>(),
-            BinnerKind::of<silhouette, none>(),
-            BinnerKind::of<silhouette, interval>(),
-            BinnerKind::of<silhouette, box>(),
-            BinnerKind::of<silhouette, split_box>(),
-            BinnerKind::of<rectangle, none, Slicing::clusters>(),
-            BinnerKind::of<rectangle, box, Slicing::clusters>(),
-            BinnerKind::of<silhouette, box, Slicing::clusters>(),
-            BinnerKind::of<rectangle, none, Slicing::z_bins>(),
-            BinnerKind::of<silhouette, none, Slicing::z_bins>()};
+    return {BinnerKind::of<false, Slicing::none>(),     BinnerKind::of<true, Slicing::none>(),
+            BinnerKind::of<false, Slicing::clusters>(), BinnerKind::of<true, Slicing::clusters>(),
+            BinnerKind::of<false, Slicing::z_bins>(),   BinnerKind::of<true, Slicing::z_bins>()};
 }
 
 class Round {
@@ -262,7 +241,7 @@ private:
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
-                lightbin::Footprints<lightbin::Footprint::rectangle, false> rectangles;
+                lightbin::Footprints<false> rectangles;
                 rectangles.project(lightbin::machine_isa(), *view_, lightbin::detail::as_lights(lights), {});
                 return rectangles.area();
             });
@@ -361,10 +340,9 @@ private:
             const std::size_t slice = slice_of(depth.low());
             if (kind.slicing != Slicing::none) {
                 if (slice != slice_of(depth.high())) continue;
-            } else if (kind.depth_test != DepthTest::none &&
-                       !surely_within(bounds_, kind.depth_test == DepthTest::split_box, point.tile, depth)) {
-                continue;
             }
+            const bool bounded = kind.depth_test && !clusters;
+            if (bounded && !surely_within(bounds_, point.tile, depth)) continue;
             ++kind.points;
             const std::uint32_t light = point.inside.light, id = ranked ? rank_of[light] : light;
             const lightbin::ListRange range = grid.ranges[point.tile + (clusters ? slice * tiles : 0)];

@@ -54,16 +54,12 @@ test('both modules make the bytes of this machine\'s library', async () => {
         cones.array.set(spots);
         rooms.array.set(boxes);
         let grids = 0;
-        for (let number = 0; number < 72; ++number) {
-            const world = number % 2 === 1, depthTest = ['no-depth-test', 'interval',
-                'box'][Math.floor(number / 8) % 3];
-            const slicing = ['no-slicing', 'clusters', 'z-bins'][Math.floor(number / 24)];
-            if (slicing === 'clusters' && depthTest === 'interval') continue;
-            const options = {ids: number % 4 < 2 ? 'u32' : 'u16', footprint: number % 8 < 4 ? 'rectangle'
-                : 'silhouette',
-                             depthTest, slicing};
+        for (let number = 0; number < 24; ++number) {
+            const world = number % 2 === 1, depthTest = number % 8 >= 4;
+            const slicing = ['no-slicing', 'clusters', 'z-bins'][Math.floor(number / 8)];
+            const options = {ids: number % 4 < 2 ? 'u32' : 'u16', depthTest, slicing};
             const inputs = {...slicing !== 'no-slicing' && {slices},
-                            ...depthTest !== 'no-depth-test' && slicing !== 'clusters' && {bounds: {min, max}}};
+                            ...depthTest && slicing !== 'clusters' && {bounds: {min, max}}};
             const lights = {spheres: {array: spheres},
                             ...world && {viewMatrix: camera, spots: {array: cones, stride: 12}, boxes: {array: rooms}}};
             const binner = lightbin.binner(options), grid = binner.bin(view, lights, inputs);
@@ -71,11 +67,10 @@ test('both modules make the bytes of this machine\'s library', async () => {
             same(Uint32Array.of(grid.lights, grid.rejected, grid.culled, grid.slices), what);
             for (const key of ['ranges', 'ids', 'order', 'bins']) same(grid[key], `${what}: ${key}`);
             assert.ok(grid.ids.length > 0 && grid.ids.BYTES_PER_ELEMENT === grid.idBytes);
-            if (slicing !== 'clusters') same(binner.bits(view, lights, 640, inputs).words, `${what}: bits`);
             binner.dispose();
             ++grids;
         }
-        assert.equal(grids, 64);
+        assert.equal(grids, 24);
 
         assert.equal(await lightbin.viewText(view), Buffer.from(block()).toString());
         same(view.shaderEdges(), 'edges');
@@ -88,7 +83,7 @@ test('both modules make the bytes of this machine\'s library', async () => {
         for (const slicing of ['no-slicing', 'clusters']) {
             const worldSpace = slicing !== 'clusters';
             const options = {language: 'wgsl', kind: 'spot', stride: 12, radius: 3, axis: 4, cosine: 7, worldSpace,
-                             depthTest: 'box', slicing};
+                             depthTest: true, slicing};
             const {bytes, constants, passes} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
                 ...slicing !== 'no-slicing' && {slices: wide}, ...worldSpace && {viewMatrix: camera}});
             const {scratch, tiles, lists} = bytes;
@@ -111,7 +106,7 @@ test('every light that a pixel\'s line of sight meets is in its tile\'s list', (
     const spheres = random_spheres(300);
     spheres[2] = -100;  // of which both ends must be tried
     for (const lightbin of modules)
-        for (const options of [{}, {footprint: 'silhouette', ids: 'u16'}]) {
+        for (const options of [{}, {ids: 'u16'}]) {
             const view = lightbin.view(square), binner = lightbin.binner(options);
             const tiles = lists_of(binner.bin(view, {spheres: {array: spheres}})).map(list => new Set(list));
             let met = 0;
@@ -210,7 +205,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
     for (const lightbin of modules) {
         const view = lightbin.view(square), binner = lightbin.binner(), spheres = random_spheres(20);
         const slices = lightbin.linearSlices({count: 4, begin: 1, end: 100});
-        const sliced = lightbin.binner({slicing: 'clusters'}), tested = lightbin.binner({depthTest: 'interval'});
+        const sliced = lightbin.binner({slicing: 'clusters'}), tested = lightbin.binner({depthTest: true});
         const gone = lightbin.view(square);
         gone.dispose();
         gone.dispose();
@@ -238,9 +233,8 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
                 /'webgpu' is none of minus-one-to-one, zero-to-one$/],
             [() => view.update({tileSize: -3}), 'tile-size-out-of-range', /-3/],
             [() => lightbin.binner({slicing: 'toString'}), 'not-a-value', /is none of no-slicing, clusters, z-bins$/],
-            [() => lightbin.binner({depthTest: 'split-box'}), 'not-a-value',
-                /^options.depthTest: 'split-box' is none of no-depth-test, interval, box$/],
-            [() => lightbin.binner({depthTest: Symbol('box')}), 'not-a-value', /'Symbol\(box\)' is none of/],
+            [() => lightbin.binner({depthTest: 'box'}), 'not-a-value', /^options.depthTest: box is no whole number/],
+            [() => lightbin.binner({slicing: Symbol('clusters')}), 'not-a-value', /'Symbol\(clusters\)' is none of/],
             [() => lightbin.view({...square, height: undefined}), 'not-a-value', /^options.height is missing/],
             [() => view.update({width: undefined}), 'not-a-value', /^options.width is missing/],
             [() => lightbin.view({...square, width: 2 ** 31}), 'not-a-value', /^options.width: 2147483648 is no whole/],
@@ -258,7 +252,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => lightbin.lightRange(1), 'not-a-value', /^cutoff: undefined is no number$/],
             [() => lightbin.lightWindow(1n, 2), 'not-a-value', /^distance: 1 is no number$/],
             [() => binner.bin(new Proxy(view, {}), lights), 'not-a-value', /^view was not made by this module$/],
-            [() => binner.bits(null, lights, 20), 'null-argument', /^view: /],
+            [() => binner.bin(null, lights), 'null-argument', /^view: /],
             [() => tested.bin(view, lights, {bounds: {min: 5}}), 'not-a-value', /^inputs.bounds.min must be an array/],
             [() => tested.bin(view, lights, {bounds: {max: new Array(400)}}), 'not-a-value',
                 /^inputs.bounds.max: element 0 is no number$/],
@@ -285,7 +279,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
                 /^format.capacity: -1 is no whole number from 0 to 4294967295$/],
             [() => lightbin.binner({coverage: true}), 'not-a-value', /there is no 'coverage'/],
             [() => lightbin.binner({isa: 'scalar'}), 'not-a-value',
-                /^options: there is no 'isa', but ids, footprint, depthTest, slicing$/],
+                /^options: there is no 'isa', but ids, depthTest, slicing$/],
             [() => lightbin.linearSlices({count: 4, near: 1, far: 2}), 'not-a-value',
                 /^options: there is no 'near', but count, begin, end, margin$/],
             [() => lightbin.exponentialSlices({count: 4, first: 1, last: 2, margn: 0.1}), 'not-a-value',
@@ -296,7 +290,6 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => lightbin.view(new Uint8Array(2 ** 28)), 'not-a-value', /^options must be an object of width/],
             [() => binner.bin(view, {spheres: []}), 'not-a-value', /^lights.spheres must be an object of count, array/],
             [() => binner.bin(view, {spheres: foreign}), 'not-a-value', /^lights.spheres must be an object of/],
-            [() => lightbin.binner({depthTest: 'interval', slicing: 'clusters'}), 'options-not-together', /./],
             [() => lightbin.linearSlices({count: 0, begin: 1, end: 2}), 'no-slices', /./],
             [() => lightbin.slicesFromBoundaries({boundaries: [3, 2]}), 'slices-do-not-ascend', /./],
             [() => binner.bin(view), 'not-a-value', /^lights must be an object of viewMatrix, layout, spheres/],
@@ -339,9 +332,6 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => sliced.bin(view, lights), 'no-slices-given', /^inputs.slices: /],
             [() => tested.bin(view, lights), 'no-bounds-given', /^inputs.bounds: /],
             [() => tested.bin(view, lights, {bounds: {min: new Float32Array(3)}}), 'z-bounds-too-small', /./],
-            [() => sliced.bits(view, lights, 20, {slices}), 'options-not-together', /./],
-            [() => binner.bits(view, lights, 19), 'ids-too-narrow', /20 are needed/],
-            [() => binner.bits(view, lights, -1), 'not-a-value', /^maxLights: /],
             [() => binner.bin(view, lights).encode({encoding: 'sentinel'}), 'capacity-unknown', /./],
             [() => lightbin.floats(1.5), 'not-a-value', /^length: /],
             [() => lightbin.floats(2 ** 29), 'out-of-memory', /^there is not enough memory$/],
@@ -474,26 +464,20 @@ test('thousands of calls allocate nothing, and what is disposed of is free', () 
     }
 });
 
-test('bits, encodings and views agree with the lists', () => {
+test('encodings and views agree with the lists', () => {
     for (const lightbin of modules) {
         const view = lightbin.view(square), binner = lightbin.binner(), lights = {spheres: {array: random_spheres(70)}};
         const grid = binner.bin(view, lights), expected = lists_of(grid);
         assert.equal(view.info.tilesX * view.info.tilesY, expected.length);
-        const of_words = words => expected.map((_, tile) => Array.from({length: 96}, (_, i) => i)
-            .filter(i => words[3 * tile + (i >> 5)] >> (i & 31) & 1));
-        const words = ({data}) => new Uint32Array(data.buffer, data.byteOffset, data.byteLength / 4);
-        assert.deepEqual(of_words(words(grid.encode({encoding: 'bitmask', maxLights: 96}))), expected);
         const longest = Math.max(...expected.map(list => list.length));
-        const cut = grid.encode({encoding: 'sentinel', ids: 'u8', capacity: longest - 1, maxLights: 70});
+        const cut = grid.encode({encoding: 'sentinel', ids: 'u8', capacity: longest - 1});
         assert.equal(cut.capacityNeeded, longest);
         assert.ok(cut.tilesCut > 0 && cut.entriesCut >= cut.tilesCut);
         for (const [tile, list] of expected.entries()) {
             const ids = [...cut.data.subarray(tile * (longest - 1), (tile + 1) * (longest - 1)), 255];
             assert.deepEqual(ids.slice(0, ids.indexOf(255)), list.slice(0, longest - 1));
         }
-        const bits = binner.bits(view, lights, 96);
-        assert.equal(bits.wordsPerTile, 3);
-        assert.deepEqual(of_words(bits.words), expected);
+        assert.throws(() => binner.bin(null, lights));
         assert.equal(grid.ids.length, 0);  // the lists ended with the binner's next call
 
         assert.deepEqual([...view.shaderGrid(5, 7)], [16, 20, 320, 320, 5, 7, 0, 0]);
@@ -654,7 +638,6 @@ test('shaders that reduce depth and make lists say what to bind', async () => {
     const given = Object.fromEntries(Object.entries(slots).map(([name, binding]) => [name, {binding}]));
     assert.deepEqual(await fill({}), await fill({slots: given}));
     assert.deepEqual(await fill({}), await fill({slots: {}}));
-    await assert.rejects(fill({slicing: 'clusters', depthTest: 'interval'}), {code: 'no-such-slicing-shader'});
     await assert.rejects(lightbin.reduceShader({language: 'essl-300'}), {code: /^no-/});
     assert.equal(lightbin.allocations, 0);
 });

@@ -6,7 +6,7 @@ export async function use(gl: WebGL2RenderingContext) {
     const lightbin = await load({simd: false});
     const view = lightbin.view({projection: new Float32Array(16), width: 1, height: 2, clipDepth: 'zero-to-one'});
     view.update({tileSize: 8});
-    const binner = lightbin.binner({slicing: 'clusters', depthTest: 'box'});
+    const binner = lightbin.binner({slicing: 'clusters', depthTest: true});
     const lamps = lightbin.floats(16), slices = lightbin.exponentialSlices({count: 3, first: 1, last: 2});
     const spheres = {array: lamps, stride: 16, centre: 0, radius: [1, 2, 3]};
     const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});

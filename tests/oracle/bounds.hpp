@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Z bounds for the tests of DepthTest::interval.
+// Z bounds for the tests of the depth test.
 #pragma once
 
 #include "spheres.hpp"
@@ -13,8 +13,7 @@ namespace oracle {
 
 struct Bounds {
     std::vector<float> min, max;
-    std::vector<float> gap_min, gap_max;  ///< nothing is drawn strictly between them
-    std::vector<std::size_t> owner;       ///< whose tip it is; no light's if there are as many as lights
+    std::vector<std::size_t> owner;  ///< whose tip it is; no light's if there are as many as lights
 };
 
 enum class BoundsShape {
@@ -23,36 +22,6 @@ enum class BoundsShape {
     tips,   ///< where a light's nearest or farthest point is, its depth, give or take an ulp: minimum and
             ///< maximum alike
 };
-
-/// A gap for every tile: within its depths, from one of its ends, around anything, or none.
-inline void make_gaps(Bounds& bounds, const Aim& aim, Random& random) {
-    for (std::size_t tile = 0; tile < bounds.min.size(); ++tile) {
-        const auto end = [&](float bound) {
-            return std::isfinite(bound) ? static_cast<double>(bound) : aim.depth(random);
-        };
-        const double low = end(bounds.min[tile]), high = end(bounds.max[tile]);
-        double from = random.uniform(low, high), to = random.uniform(low, high);
-        if (from > to) std::swap(from, to);
-        switch (random.integer(0, 9)) {
-        case 0:
-            from = low;
-            break;
-        case 1:
-            to = high;
-            break;
-        case 2:
-            from = aim.depth(random), to = aim.depth(random);
-            break;
-        case 3:
-            from = high, to = low;
-            break;
-        default:
-            break;
-        }
-        bounds.gap_min.push_back(static_cast<float>(from));
-        bounds.gap_max.push_back(static_cast<float>(to));
-    }
-}
 
 /// Bounds for every tile of the camera; a few of any shape are infinite, the wrong way round, or those of an
 /// empty tile.
@@ -91,10 +60,7 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             bounds.max.push_back(max);
             bounds.owner.push_back(lights.size());
         }
-    if (shape != BoundsShape::tips) {
-        make_gaps(bounds, aim, random);
-        return bounds;
-    }
+    if (shape != BoundsShape::tips) return bounds;
     for (std::size_t i = 0; i < lights.size(); ++i)
         for (const float r : {lights[i].w, -lights[i].w}) {
             const Light& light = lights[i];
@@ -110,7 +76,6 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             bounds.min[tile] = bounds.max[tile] = tip;
             bounds.owner[tile] = i;
         }
-    make_gaps(bounds, aim, random);
     return bounds;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes, and balls cut by boxes: no miss, on every camera kind, with every footprint and depth test, in view and
-// world space.
+// Boxes, and balls cut by boxes: no miss, on every camera kind, with and without depth test, in view and world
+// space.
 #include "boxes.hpp"
 #include "shape_proof.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// campaign LIGHTS_A_FAMILY [flush]: proves that no light is missed in families of stiff and extreme inputs, with every
-// footprint, depth test and instruction set. Prints a line a family: cases, proofs, those of them in rationals, misses,
-// complaints. `flush` sets FTZ and DAZ. campaign LIGHTS whole: one scene of a 16384 x 16384 viewport at one-pixel tiles,
-// which takes 8 GB. ctest runs this program, and tests/campaign.sh builds it in many ways. Where LIGHTBIN_TEST_SHARE is set,
-// as for emulators, a family has at most 1,000 lights.
+// campaign LIGHTS_A_FAMILY [flush]: proves that no light is missed in families of stiff and extreme inputs, with and
+// without depth test, on every instruction set. Prints a line a family: cases, proofs, those of them in rationals,
+// misses, complaints. `flush` sets FTZ and DAZ. campaign LIGHTS whole: one scene of a 16384 x 16384 viewport at
+// one-pixel tiles, which takes 8 GB. ctest runs this program, and tests/campaign.sh builds it in many ways. Where
+// LIGHTBIN_TEST_SHARE is set, as for emulators, a family has at most 1,000 lights.
 #include "judge.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Clusters: no miss over tiles and slices, and no excess beyond what rectangles, depths and boxes explain, on every
-// camera kind. That a tile is in the rectangle or the silhouette, or out of it, is proven in cells.cpp.
+// camera kind. That a tile is in the rectangle, or out of it, is proven in cells.cpp.
 #include "harness.hpp"
 
 using namespace oracle;
@@ -26,16 +26,13 @@ std::vector<float> make_boundaries(const lightbin::View& view, const std::vector
     return boundaries;
 }
 
-template <lightbin::DepthTest depth_test, lightbin::Footprint footprint = lightbin::Footprint::rectangle>
+template <bool depth_test>
 void examine_clusters(const Camera& camera, Tally& tally, std::uint64_t& seed) {
-    constexpr bool boxes = depth_test == lightbin::DepthTest::box;
     Examiner examiner(camera, tally);
     const Oracle& oracle = examiner.oracle;
     const lightbin::View view = view_of(camera);
     lightbin::Binner<> rectangles;
-    lightbin::Binner<lightbin::Options{
-        .footprint = footprint, .depth_test = depth_test, .slicing = lightbin::Slicing::clusters}>
-        binner;
+    lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = lightbin::Slicing::clusters}> binner;
     const std::size_t tiles = view.tile_count();
     for (const SphereSet& set : sphere_sets()) {
         const std::vector<Light> lights =
@@ -74,8 +71,8 @@ void examine_clusters(const Camera& camera, Tally& tally, std::uint64_t& seed) {
                     if (in_list[slice * tiles + tile][i]) {
                         ++tally.explained;
                         const float end = std::abs(lights[i].z) + lights[i].w;
-                        const bool fits = in_depth && (!boxes || end >= FLT_MAX ||
-                                                       examiner.box_meets(subject, x, y, {cell}));
+                        const bool fits = in_depth && (!depth_test || end >= FLT_MAX ||
+                                                       examiner.box_meets(subject, x, y, cell));
                         if (!in_rectangle[tile][i] || !fits)
                             tally.report(tally.unexplained, "unexplained", camera, set.name, i, lights[i],
                                          at());
@@ -91,23 +88,15 @@ void examine_clusters(const Camera& camera, Tally& tally, std::uint64_t& seed) {
 }
 
 void prove(const std::string& kind, const std::vector<Camera>& cameras) {
-    using lightbin::DepthTest;
-    Tally slabs, boxes, silhouettes;
+    Tally slabs, boxes;
     std::uint64_t seed = seed_of(kind);
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        examine_clusters<DepthTest::none>(cameras[i], slabs, seed);
-        examine_clusters<DepthTest::box>(cameras[i], boxes, seed);
-        if (i % 2 == 0)
-            examine_clusters<DepthTest::box, lightbin::Footprint::silhouette>(cameras[i], silhouettes, seed);
-        else
-            examine_clusters<DepthTest::none, lightbin::Footprint::silhouette>(cameras[i], silhouettes, seed);
+    for (const Camera& camera : cameras) {
+        examine_clusters<false>(camera, slabs, seed);
+        examine_clusters<true>(camera, boxes, seed);
     }
-    for (const Tally* tally : {&slabs, &boxes, &silhouettes}) {
-        MESSAGE(kind << ", "
-                     << std::string(tally == &slabs   ? "slices"
-                                    : tally == &boxes ? "slices, boxes"
-                                                      : "slices, silhouettes")
-                     << ": " << tally->verdicts << " exact verdicts, " << tally->explained << " explained");
+    for (const Tally* tally : {&slabs, &boxes}) {
+        MESSAGE(kind << (tally == &slabs ? ", slices: " : ", slices, boxes: ") << tally->verdicts
+                     << " exact verdicts, " << tally->explained << " explained");
         CHECK(tally->misses == 0);
         CHECK(tally->unexplained == 0);
         CHECK(tally->verdicts >= 30000);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// reduce_depth against exact view depths, on every instruction set: every sample, and every fragment that may have left it, lies within its tile's bounds and outside of its gap, and the
-// bounds are no wider than float rounding and the format's step explain.
+// reduce_depth against exact view depths, on every instruction set: every sample, and every fragment that may have left
+// it, lies within its tile's bounds, and the bounds are no wider than float rounding and the format's step explain.
 #include "harness.hpp"
 
 #include <set>
@@ -62,8 +62,7 @@ bool above(float bound, const Depth& depth) {  // bound >= depth
 }
 
 struct Counts {
-    std::uint64_t samples = 0, tiles = 0, unknown = 0, empty = 0, endless = 0, gaps = 0, outside = 0,
-                  loose = 0;
+    std::uint64_t samples = 0, tiles = 0, unknown = 0, empty = 0, endless = 0, outside = 0, loose = 0;
 };
 
 /// A depth buffer of every style a tile at a time, and what a rasteriser should never leave in one.
@@ -181,16 +180,14 @@ private:
     }
 
     void reduce(const lightbin::DepthBuffer& buffer) {
-        for (auto* side : {&min_, &max_, &gap_min_, &gap_max_})
+        for (auto* side : {&min_, &max_})
             side->assign(view_.tile_count(), nan);
-        const auto all = lightbin::reduce_depth(view_, buffer, {min_, max_, gap_min_, gap_max_});
+        const auto all = lightbin::reduce_depth(view_, buffer, {min_, max_});
         REQUIRE(all.has_value());
-        for (std::size_t tile = 0; tile < gap_min_.size(); ++tile)
-            counts_.gaps += gap_min_[tile] < gap_max_[tile];
-        std::vector<float> alone(view_.tile_count(), nan), other[4] = {alone, alone, alone, alone};
+        std::vector<float> alone(view_.tile_count(), nan), other[2] = {alone, alone};
         for (const lightbin::Isa isa : {lightbin::Isa::scalar, lightbin::Isa::simd128, lightbin::Isa::avx2}) {
-            REQUIRE(lightbin::reduce_depth(view_, buffer, {other[0], other[1], other[2], other[3]}, isa).has_value());
-            CHECK((other[0] == min_ && other[1] == max_ && other[2] == gap_min_ && other[3] == gap_max_));
+            REQUIRE(lightbin::reduce_depth(view_, buffer, {other[0], other[1]}, isa).has_value());
+            CHECK((other[0] == min_ && other[1] == max_));
         }
         const auto only_min = lightbin::reduce_depth(view_, buffer, {.min = alone});
         REQUIRE(only_min.has_value());
@@ -213,7 +210,6 @@ private:
             std::any_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); });
         if (unknown) {
             lowest = 0, highest = 1;  // near to far, and anything between
-            CHECK(!(gap_min_[tile] < gap_max_[tile]));
             ++counts_.unknown;
         } else {
             for (const float sample : std::set<float>(samples.begin(), samples.end())) {
@@ -264,9 +260,7 @@ private:
     }
 
     bool contains(std::size_t tile, const Depth& depth) const {
-        const bool before = !(gap_min_[tile] < gap_max_[tile]) || above(gap_min_[tile], depth),
-                   behind = below(gap_max_[tile], depth);
-        return below(min_[tile], depth) && above(max_[tile], depth) && (before || behind);
+        return below(min_[tile], depth) && above(max_[tile], depth);
     }
 
     void report(const std::string& what, std::size_t tile, double window, DepthFormat format) {
@@ -283,7 +277,7 @@ private:
     lightbin::View view_;
     Counts& counts_;
     bool reversed_ = false;
-    std::vector<float> min_, max_, gap_min_, gap_max_;
+    std::vector<float> min_, max_;
 };
 
 void prove_depths(const std::string& kind, const Camera& camera) {
@@ -303,13 +297,11 @@ void prove_depths(const std::string& kind, const Camera& camera) {
             pixels.fragments(format, random);
     }
     MESSAGE(kind << ": " << counts.samples << " samples in " << counts.tiles << " tiles, " << counts.unknown
-                 << " with NaN, " << counts.empty << " empty, " << counts.endless << " without end, "
-                 << counts.gaps << " with a gap");
+                 << " with NaN, " << counts.empty << " empty, " << counts.endless << " without end");
     CHECK(counts.outside == 0);
     CHECK(counts.loose == 0);
     CHECK(counts.samples > 50000);
     CHECK(counts.unknown > 100);
-    CHECK(counts.gaps > 300);
     CHECK(counts.empty > 100);
 }
 

@@ -14,10 +14,15 @@ namespace oracle {
 
 namespace {
 
+/// Whether lights are tested by depth. tests/same_bytes.sh compiles this file with earlier versions, too, in which the
+/// option was one of several tests: the third was this one.
+using DepthTest = decltype(lightbin::Options::depth_test);
+constexpr DepthTest no_test = static_cast<DepthTest>(0), tested = static_cast<DepthTest>(2);
+
 template <lightbin::Options options>
 Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::size_t workers = 1) {
     thread_local lightbin::Binner<options> binner;
-    thread_local std::vector<float> sides[4];
+    thread_local std::vector<float> sides[2];
     const auto grid = [&] {
         const Flush flushing(flush);
         // The caller's threads at their least helpful: one of them, which takes the work from the end.
@@ -26,24 +31,16 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
                 body(--n);
         };
         const auto parallel = workers > 1 ? lightbin::Parallel(workers, run) : lightbin::Parallel();
-        if constexpr (options.depth_test == lightbin::DepthTest::none) {
-            return binner.bin(view, scene.lights, {}, parallel);
-        } else {
-            constexpr bool split = options.depth_test == lightbin::DepthTest::split_box;
-            lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
-            if (split) bounds.gap_min = scene.gap_min, bounds.gap_max = scene.gap_max;
-            if (!scene.depth.empty()) {
-                for (std::vector<float>& side : sides)
-                    side.resize(view.tile_count());
-                const auto gap = [&](std::size_t side) {
-                    return split ? std::span<float>(sides[side]) : std::span<float>{};
-                };
-                bounds = *lightbin::reduce_depth(
-                    view, {.depth = scene.depth, .skip_background = scene.skip_background},
-                    {sides[0], sides[1], gap(2), gap(3)}, options.isa);
-            }
-            return binner.bin(view, scene.lights, {.bounds = bounds}, parallel);
+        lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
+        if (options.depth_test != no_test && !scene.depth.empty()) {
+            for (std::vector<float>& side : sides)
+                side.resize(view.tile_count());
+            bounds = *lightbin::reduce_depth(
+                view, {.depth = scene.depth, .skip_background = scene.skip_background}, {sides[0], sides[1]},
+                options.isa);
         }
+        static const lightbin::Slices slices = *lightbin::Slices::exponential(20, 0.5f, 300.0f);
+        return binner.bin(view, scene.lights, lightbin::inputs_for<options>(bounds, slices), parallel);
     }();
     Lists lists;
     if (!grid) return lists;
@@ -53,6 +50,9 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
         lists.offsets.push_back(range.offset);
     lists.offsets.push_back(static_cast<std::uint32_t>(grid->ids().size()));
     lists.ids.assign(grid->ids().begin(), grid->ids().end());
+    lists.ids.insert(lists.ids.end(), grid->ranks().order.begin(), grid->ranks().order.end());
+    for (const lightbin::BinRange bin : grid->ranks().bins)
+        lists.ids.insert(lists.ids.end(), {bin.least, bin.greatest});
     if (view.tile_count() > (1 << 24)) binner = lightbin::Binner<options>();  // gigabytes
     return lists;
 }
@@ -110,24 +110,26 @@ Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& com
         complaints.push_back("the camera was refused: " + std::string(view.error().message()));
         return {};
     }
-    using lightbin::DepthTest, lightbin::Footprint;
-    const auto lists_of = [&]<Footprint footprint, DepthTest depth_test>() {
-        return on_all_tiers<lightbin::Options{.footprint = footprint, .depth_test = depth_test}>(
+    using lightbin::Slicing;
+    const auto lists_of = [&]<DepthTest depth_test, Slicing slicing = Slicing::none>() {
+        return on_all_tiers<lightbin::Options{.depth_test = depth_test, .slicing = slicing}>(
             *view, scene, flush_, complaints);
     };
     switch (rung) {
-#define RUNG(name, footprint, depth_test)                                                                    \
-    case Rung::name:                                                                                         \
-        return lists_of.operator()<Footprint::footprint, DepthTest::depth_test>();
-        RUNG(rectangle, rectangle, none)
-        RUNG(rectangle_interval, rectangle, interval)
-        RUNG(rectangle_box, rectangle, box)
-        RUNG(rectangle_split_box, rectangle, split_box)
-        RUNG(silhouette, silhouette, none)
-        RUNG(silhouette_interval, silhouette, interval)
-        RUNG(silhouette_box, silhouette, box)
-        RUNG(silhouette_split_box, silhouette, split_box)
-#undef RUNG
+    case Rung::rectangles:
+        return lists_of.operator()<no_test>();
+    case Rung::depth_test:
+        return lists_of.operator()<tested>();
+#if defined(ORACLE_EVERY_WAY)
+    case Rung::clusters:
+        return lists_of.operator()<no_test, Slicing::clusters>();
+    case Rung::tested_clusters:
+        return lists_of.operator()<tested, Slicing::clusters>();
+    case Rung::z_bins:
+        return lists_of.operator()<no_test, Slicing::z_bins>();
+    case Rung::tested_z_bins:
+        return lists_of.operator()<tested, Slicing::z_bins>();
+#endif
     }
     return {};
 }

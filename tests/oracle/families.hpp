@@ -19,7 +19,7 @@ namespace oracle {
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::vector<float> min, max, gap_min, gap_max;  ///< one a tile
+    std::vector<float> min, max;  ///< one a tile
     /// One a pixel, window depth: where it is not empty, all Z bounds are to be made from it.
     std::vector<float> depth;
     bool skip_background = false;
@@ -100,8 +100,7 @@ inline void set_bounds(Scene& scene, const Aim& aim, Random& random, double spec
     Bounds bounds =
         make_bounds(scene.camera, aim, scene.lights, static_cast<BoundsShape>(random.integer(0, 2)), random);
     scene.min = bounds.min, scene.max = bounds.max;
-    scene.gap_min = bounds.gap_min, scene.gap_max = bounds.gap_max;
-    for (auto* side : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max})
+    for (auto* side : {&scene.min, &scene.max})
         for (float& depth : *side)
             if (random.chance(specials)) depth = special_depth(random);
 }
@@ -111,7 +110,7 @@ template <class MakeLens, class MakeLight>
 Scene scene_of(Random& random, std::size_t count, const MakeLens& make_lens, const MakeLight& make_light,
                double specials = 0.01) {
     const Screen screen = any_screen(random);
-    Scene scene{camera_of("", make_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{camera_of("", make_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
         scene.lights.push_back(make_light(aim, random));
@@ -154,8 +153,6 @@ inline Scene cell_faces(Random& random, std::size_t count) {
         const std::size_t tile = static_cast<std::size_t>(random.bits() % scene.min.size());
         const int place[2] = {static_cast<int>(tile) % nx, static_cast<int>(tile) / nx};
         float low = scene.min[tile], high = scene.max[tile];
-        if (random.chance(0.3)) high = scene.gap_min[tile];
-        if (random.chance(0.3)) low = scene.gap_max[tile];
         if (!std::isfinite(low)) low = static_cast<float>(aim.near_plane);
         if (!std::isfinite(high)) high = static_cast<float>(aim.depth(random));
         const int end = random.integer(-1, 1);
@@ -331,7 +328,7 @@ inline Scene one_pixel_tiles(Random& random, std::size_t count) {
     const bool wide = random.chance(0.5);
     const Screen screen = {wide ? 16384 : 24, wide ? 24 : 16384, 1, random.chance(0.5)};
     const double aspect = random.chance(0.5) ? 1 : aspect_of(screen);
-    Scene scene{camera_of("", any_lens(aspect, random), screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{camera_of("", any_lens(aspect, random), screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
         scene.lights.push_back(i % 5000 == 0 ? any_light(aim, random) : pixel_light(aim, random, 8));
@@ -339,11 +336,11 @@ inline Scene one_pixel_tiles(Random& random, std::size_t count) {
     return scene;
 }
 
-/// One-pixel tiles, 16384 along both sides: 2^28. The Z bounds are one of a few in each and have no gaps, for
-/// what memory there is. For the campaign only.
+/// One-pixel tiles, 16384 along both sides: 2^28. The Z bounds are one of a few in each, for what memory
+/// there is. For the campaign only.
 inline Scene whole_16k(Random& random, std::size_t count) {
     const Screen screen = {16384, 16384, 1, random.chance(0.5)};
-    Scene scene{camera_of("", perspective(1, random), screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{camera_of("", perspective(1, random), screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
         scene.lights.push_back(pixel_light(aim, random, i % 5000 == 0 ? 256 : 8));
@@ -371,7 +368,7 @@ inline Scene orthographic_edges(Random& random, std::size_t count) {
     lens.orthographic = true;
     lens.near_plane = random.integer(-8, 8), lens.far_plane = lens.near_plane + 64;
     lens.factor = 1;
-    Scene scene{camera_of("", lens, screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{camera_of("", lens, screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i) {
         const double r = pixel * random.integer(1, 4096) / 16;
@@ -387,13 +384,13 @@ inline Scene orthographic_edges(Random& random, std::size_t count) {
     return scene;
 }
 
-/// Depth buffers of few values: 0, 1, NaN, beyond them, and all that lies between; in a tile up to three, so
-/// that there are gaps. Lights touch what is drawn.
+/// Depth buffers of few values: 0, 1, NaN, beyond them, and all that lies between; in a tile up to three.
+/// Lights touch what is drawn.
 inline Scene depth_buffers(Random& random, std::size_t count) {
     Screen screen = any_screen(random);
     while (screen.width * screen.height > 40000 || screen.tile == 1)
         screen = any_screen(random);
-    Scene scene{camera_of("", any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{camera_of("", any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     scene.skip_background = random.chance(0.5);
     const auto sample = [&]() -> float {

@@ -246,7 +246,7 @@ public:
             tally.report(tally.unexplained, "unexplained", oracle.camera(), set, id, light, at());
     }
 
-    /// Depths that hold all of a ball that a rectangle or silhouette is made of: beyond the near plane of a perspective,
+    /// Depths that hold all of a ball that a rectangle is made of: beyond the near plane of a perspective,
     /// and not cut elsewhere.
     FlatDepths seen_depths(const FlatBall& ball) const {
         const double end = 2 * (std::abs(ball.depth) + ball.radius);
@@ -292,54 +292,14 @@ public:
                (!max || s.seen.depth - s.seen.radius - rounding <= *max + abs(*max) / (1 << 22));
     }
 
-    /// A tile of the silhouette of a sphere wholly beyond the near plane: the sphere meets it, give or take the
-    /// margins of the rectangle and, twice, those that silhouette.inl states: 2^-44 m F of the squared radius and
-    /// 2^-46 of what the ends are made of.
-    bool silhouette_meets(const Subject& s, int x, int y) {
-        const FlatBall& b = s.flat;
-        Depths beyond_near;
-        if (!oracle.orthographic()) beyond_near.min = oracle.range().min;
-        if (truth.filter.cell_distance2(x, y, seen_depths(b), b) <= b.radius * b.radius) return true;
-
-        const auto larger = [](const Slab& slab) {
-            return nearly(std::max(abs(slab.low.slope), abs(slab.high.slope)));
-        };
-        CameraBall ball = s.seen;
-        Rational grow = grow_x_;
-        if (oracle.orthographic()) {
-            ball.radius *= 1 + Rational(1) / (1 << 20);
-        } else {
-            const double v = std::max(larger(rows_.front()), larger(rows_.back()));
-            const double f = b.radius * (1 + v), m = v * b.depth + std::abs(b.y) + f;
-            const double a = b.y * b.y + (b.depth - b.radius) * (b.depth + b.radius),
-                         t = std::sqrt(a + b.x * b.x);
-            const Slab& column = columns_.front();
-            const double width = nearly(column.high.slope - column.low.slope);
-            const double pixels = (std::abs(b.x) * (std::abs(b.y) * v + b.depth) + t * f) / a / width *
-                                  std::min(oracle.camera().tile, oracle.camera().width);
-            grow += exact(pixels) / (std::int64_t{1} << 45);
-            // The root of r^2 + growth is below r + growth / 2r and below r + sqrt(growth).
-            const double growth = 0x1p-43 * m * f + 0x1p-92 * m * m;
-            ball.radius += exact(std::min(b.radius > 0 ? growth / b.radius : growth, 2 * std::sqrt(growth)));
-        }
-        // The last row counts as a whole one.
-        const Edges columns = oracle.columns(x, x + 1);
-        const Rational low = y * oracle.camera().tile, high = low + oracle.camera().tile;
-        return meets({oracle.column_slab({columns.low - grow, columns.high + grow}),
-                      oracle.row_slab({low - grow_y_, high + grow_y_})},
-                     beyond_near, ball);
-    }
-
     /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
     /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
-    /// What double precision gets wrong is nothing beside the margins, so the cells are asked in it first.
-    bool box_meets(const Subject& s, int x, int y, const std::vector<Cell>& cells) {
+    /// What double precision gets wrong is nothing beside the margins, so it is asked first.
+    bool box_meets(const Subject& s, int x, int y, const Cell& cell) {
         if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
-        const auto surely = [&](const Cell& cell) {
-            return !cell.empty && truth.filter.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius;
-        };
-        const auto barely = [&](const Cell& cell) { return !cell.empty && box_meets(s, x, y, cell.depths()); };
-        return std::any_of(cells.begin(), cells.end(), surely) || std::any_of(cells.begin(), cells.end(), barely);
+        return !cell.empty &&
+               (truth.filter.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius ||
+                box_meets(s, x, y, cell.depths()));
     }
 
     bool box_meets(const Subject& s, int x, int y, const Depths& depths) const {
@@ -397,13 +357,5 @@ private:
     Rational grow_x_, grow_y_;
     std::uint64_t asked_ = 0;
 };
-
-/// What a tile has to light: one run of depths, or with split_box one on each side of its gap.
-inline std::vector<Examiner::Cell> cells_of(const Examiner& examiner, float min, float max, float gap_min,
-                                            float gap_max, bool split) {
-    if (!split || !(gap_min < gap_max)) return {{examiner, min, max}};
-    if (min > max) return {};
-    return {{examiner, min, std::min(gap_min, max)}, {examiner, std::max(gap_max, min), max}};
-}
 
 }  // namespace oracle

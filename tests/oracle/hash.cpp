@@ -56,14 +56,14 @@ unsigned long long hash_of(const Scene& scene) {
     const int numbers[] = {scene.camera.width, scene.camera.height, scene.camera.tile, scene.skip_background};
     hash.add(numbers, sizeof numbers);
     hash.add(scene.lights);
-    for (const auto* side : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max, &scene.depth})
+    for (const auto* side : {&scene.min, &scene.max, &scene.depth})
         hash.add(*side);
     return hash.value();
 }
 
 Scene scene_on(const Screen& screen, Random& random, std::size_t count) {
     Scene scene{
-        camera_of("", families::any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, {}, {}, false};
+        camera_of("", families::any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
         scene.lights.push_back(random.chance(0.8) ? spheres::field(aim, random)

@@ -84,8 +84,8 @@ public:
             return;
         }
         TilesOfLights tiles(lists, scene_.lights.size());
-        const bool first = rung == Rung::rectangle;
-        if (rung != Rung::rectangle && rung != Rung::silhouette) gather_ranges(info(rung).split);
+        const bool first = rung == Rung::rectangles;
+        if (!first) gather_ranges();
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
             ++verdicts.cases;
             if (is_bad(scene_.lights[i])) {
@@ -101,7 +101,7 @@ public:
 
     std::uint64_t test_filter(Random& random, std::size_t questions, std::uint64_t& wrong) {
         std::uint64_t answered = 0;
-        gather_ranges(random.chance(0.5));
+        gather_ranges();
         for (std::size_t i = 0; i < questions; ++i) {
             const Light& light = scene_.lights[random.bits() % scene_.lights.size()];
             if (is_bad(light)) continue;
@@ -143,7 +143,7 @@ private:
         return true;
     }
 
-    /// Rung rectangle: all tiles but the light's own, in as few blocks as they come.
+    /// Rung rectangles: all tiles but the light's own, in as few blocks as they come.
     void outside(std::size_t i, std::span<const std::uint32_t> tiles, Verdicts& verdicts) {
         const int nx = truth_.oracle.tiles_x(), ny = truth_.oracle.tiles_y();
         if (tiles.empty()) return prove(i, {0, nx, 0, ny}, {truth_.range, NAN, NAN}, verdicts);
@@ -169,10 +169,6 @@ private:
         for (const std::uint32_t tile : rectangle) {
             if (at < tiles.size() && tiles[at] == tile) {
                 ++at;
-                continue;
-            }
-            if (rung_ == Rung::silhouette) {
-                prove(i, one_tile(tile), {truth_.range, NAN, NAN}, verdicts);
                 continue;
             }
             for (const Range& range : ranges_of(tile))
@@ -231,8 +227,7 @@ private:
 
     /// What each tile has to light, for ranges_of(): every sample by itself; bounds as they are asked for, as there
     /// may be very many.
-    void gather_ranges(bool split) {
-        split_ = split;
+    void gather_ranges() {
         ranges_.clear();
         if (!scene_.depth.empty()) gather_samples();
     }
@@ -291,24 +286,15 @@ private:
             return std::span(ranges_).subspan(range_starts_[tile],
                                               range_starts_[tile + 1] - range_starts_[tile]);
         ranges_.clear();
-        const float min = scene_.min[tile], max = scene_.max[tile];
-        const bool gaps = split_ && !scene_.gap_min.empty();
-        const float from = gaps ? scene_.gap_min[tile] : NAN, to = gaps ? scene_.gap_max[tile] : NAN;
-        if (!(from < to)) {
-            add_range(min, max);
-        } else if (!(min > max)) {
-            add_range(min, max < from ? max : from);
-            add_range(min > to ? min : to, max);
-        }
+        add_range(scene_.min[tile], scene_.max[tile]);
         return ranges_;
     }
 
     const Scene& scene_;
     Truth truth_;
     double sign_[3];  ///< view space to the camera's axes
-    Rung rung_ = Rung::rectangle;
+    Rung rung_ = Rung::rectangles;
     std::unique_ptr<TilesOfLights> rectangles_;
-    bool split_ = false;
     std::vector<std::size_t> range_starts_;
     std::vector<Range> ranges_;
 };
@@ -342,7 +328,7 @@ void flush(Scene& scene) {
     for (Light& light : scene.lights)
         for (float* v : {&light.x, &light.y, &light.z, &light.w})
             flush_number(*v);
-    for (auto* depths : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max, &scene.depth})
+    for (auto* depths : {&scene.min, &scene.max, &scene.depth})
         std::for_each(depths->begin(), depths->end(), flush_number);
 }
 }  // namespace

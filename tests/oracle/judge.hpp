@@ -25,7 +25,7 @@ public:
     ~Judge();
     Judge(Judge&&) noexcept;
 
-    /// Every light of every rung, `rectangle` first: what it lacks is proven by whole blocks of tiles, and the
+    /// Every light of every rung, `rectangles` first: what it lacks is proven by whole blocks of tiles, and the
     /// others by what they lack of it (a light of theirs that it lacks is a stray).
     void examine(Rung rung, const Lists& lists, Verdicts& verdicts);
 

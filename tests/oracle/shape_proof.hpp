@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The proof that no list lacks a light that it should have, for lights whose shape is a part of a ball. spots.cpp and
-// boxes.cpp run it for their kind of light: on every camera kind, with every footprint and depth test, in view and
-// world space.
+// boxes.cpp run it for their kind of light: on every camera kind, with and without depth test, in view and world
+// space.
 //
 // A question is whether a light meets a cell whose list does not have it. Cells beside a tile that has the light have a
 // number of questions of their own, as a wrong margin shows there first.
@@ -84,26 +84,22 @@ public:
                                            : examiner.subject(Kind::ball(light)).flat);
     }
 
-    /// Lists of these tiles lack a light: it must not meet any of their cells.
-    void ask(std::size_t i, const Block& tiles, const std::vector<Examiner::Cell>& cells, const std::string& rung,
+    /// Lists of these tiles lack a light: it must not meet their cell.
+    void ask(std::size_t i, const Block& tiles, const Examiner::Cell& cell, const std::string& rung,
              const std::string& set) {
         ++tally_.verdicts;
-        bool by_shape = false, open = false;
-        for (const Examiner::Cell& cell : cells) {
-            if (cell.empty || examiner_.apart(tiles.x0, tiles.x1, tiles.y0, tiles.y1, cell, balls_[i]) ||
-                cell.depths().contains_none())
-                continue;
-            by_shape = true;
-            const std::optional<bool> meets =
-                shapes_.meets(i, tiles, cell.flat, [&] { return planes_(tiles, cell.depths()); });
-            open |= !meets;
-            if (meets == true && ++tally_.misses <= 5)
-                MESSAGE("MISS: " << examiner_.oracle.camera().name << ", " << rung << ", " << set << " "
-                                 << text(lights[i]) << " tiles " << tiles.x0 << ".." << tiles.x1 << ", " << tiles.y0
-                                 << ".." << tiles.y1);
-        }
-        tally_.by_shape += by_shape, tally_.open += open;
-        tally_.sets[set].by_shape += by_shape, tally_.sets[set].open += open;
+        ShapeTally::Set& of_set = tally_.sets[set];
+        if (cell.empty || examiner_.apart(tiles.x0, tiles.x1, tiles.y0, tiles.y1, cell, balls_[i]) ||
+            cell.depths().contains_none())
+            return;
+        ++tally_.by_shape, ++of_set.by_shape;
+        const std::optional<bool> meets =
+            shapes_.meets(i, tiles, cell.flat, [&] { return planes_(tiles, cell.depths()); });
+        if (!meets) ++tally_.open, ++of_set.open;
+        if (meets == true && ++tally_.misses <= 5)
+            MESSAGE("MISS: " << examiner_.oracle.camera().name << ", " << rung << ", " << set << " "
+                             << text(lights[i]) << " tiles " << tiles.x0 << ".." << tiles.x1 << ", " << tiles.y0
+                             << ".." << tiles.y1);
     }
 
     const Lights lights;
@@ -155,14 +151,9 @@ inline lightbin::Slices slices_at_ends(const Aim& aim, const std::vector<Light>&
 template <class Kind, lightbin::Options options>
 void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::View& view, const ViewMatrix* matrix,
                     std::size_t most, typename Kind::Tally& tally, std::uint64_t& seed) {
-    using lightbin::DepthTest;
-    constexpr bool sliced = options.slicing != lightbin::Slicing::none,
-                   bounded = !sliced && options.depth_test != DepthTest::none,
-                   split = options.depth_test == DepthTest::split_box,
-                   whole_rectangles = Kind::whole_rectangles && !sliced && !bounded &&
-                                      options.footprint == lightbin::Footprint::rectangle;
-    const std::string rung = std::string(to_string(options.footprint)) + ", " + to_string(options.depth_test) + ", " +
-                             to_string(options.slicing);
+    constexpr bool sliced = options.slicing != lightbin::Slicing::none, bounded = !sliced && options.depth_test,
+                   whole_rectangles = Kind::whole_rectangles && !sliced && !bounded;
+    const std::string rung = std::string(options.depth_test ? "depth test, " : "") + to_string(options.slicing);
     const Aim aim(camera);
     const std::size_t tiles = view.tile_count();
     const int nx = view.tiles_x(), ny = view.tiles_y();
@@ -180,8 +171,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
             least.push_back({s.x, s.y, s.z, s.radius});
         }
         const Bounds bounds = make_bounds(camera, aim, least, static_cast<BoundsShape>(seed / 2 % 3), random);
-        lightbin::ZBounds given = {.min = bounds.min, .max = bounds.max};
-        if (split) given.gap_min = bounds.gap_min, given.gap_max = bounds.gap_max;
+        const lightbin::ZBounds given = {.min = bounds.min, .max = bounds.max};
         const lightbin::Slices slices = slices_at_ends(aim, least, random);
 
         const auto grid = bin_in(Kind::to_library(subjects.lights), matrix, [&](const auto& lights) {
@@ -197,7 +187,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
                     CHECK(!emitted[i].any());
                 else
                     for (const Block& block : blocks_around(emitted[i], nx, ny))
-                        subjects.ask(i, block, {{examiner}}, rung, set.name);
+                        subjects.ask(i, block, Examiner::Cell(examiner), rung, set.name);
             }
             continue;
         }
@@ -240,9 +230,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
                 if (sliced && slice > 0) min = boundaries[slice - 1];
                 if (sliced && slice < boundaries.size()) max = boundaries[slice];
                 const int x = static_cast<int>(tile) % nx, y = static_cast<int>(tile) / nx;
-                subjects.ask(pairs[p].light, {x, x + 1, y, y + 1},
-                             cells_of(examiner, min, max, bounds.gap_min[tile], bounds.gap_max[tile], split), rung,
-                             set.name);
+                subjects.ask(pairs[p].light, {x, x + 1, y, y + 1}, {examiner, min, max}, rung, set.name);
             }
         };
         judge(beside, Kind::beside * most);
@@ -261,16 +249,10 @@ void examine_all(const Camera& camera, const ViewMatrix* matrix, std::size_t mos
         examine_shapes<Kind, options>(camera, examiner, view, matrix, most, tally, seed);
     };
     with.template operator()<Options{}>();
-    with.template operator()<Options{.footprint = Footprint::silhouette}>();
-    with.template operator()<Options{.depth_test = DepthTest::interval}>();
-    with.template operator()<Options{.depth_test = DepthTest::box}>();
-    with.template operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
+    with.template operator()<Options{.depth_test = true}>();
     with.template operator()<Options{.slicing = Slicing::clusters}>();
-    with.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-    with.template operator()<Options{
-        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    with.template operator()<Options{.depth_test = true, .slicing = Slicing::clusters}>();
     with.template operator()<Options{.slicing = Slicing::z_bins}>();
-    with.template operator()<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
 }
 
 /// Calls round(seed, tally) once, or as often as LIGHTBIN_ROUNDS says, and checks what all kinds of light must pass.

@@ -15,9 +15,9 @@ namespace {
 constexpr lightbin::Extent small = {640, 360};
 constexpr int tile_size = 64;
 
-/// Z bounds of tiles, as of pixels that lie anywhere: some with a gap, some of one depth, some empty.
+/// Z bounds of tiles, as of pixels that lie anywhere: some of one depth, some empty.
 struct Bounds {
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> min, max;
 
     Bounds(std::size_t tiles, Dice& dice) {
         for (std::size_t i = 0; i < tiles; ++i) {
@@ -25,11 +25,9 @@ struct Bounds {
                         to = from + deep;
             min.push_back(i % 11 == 0 ? 2 * to : from);
             max.push_back(to);
-            gap_min.push_back(from + 0.3f * deep);
-            gap_max.push_back(i % 2 == 0 ? from + 0.8f * deep : from);
         }
     }
-    lightbin::ZBounds given() const { return {min, max, gap_min, gap_max}; }
+    lightbin::ZBounds given() const { return {min, max}; }
 };
 
 /// One tile and one spot, by nothing but certificates.
@@ -39,13 +37,8 @@ public:
 
     std::uint32_t facts(const lightbin::Spot& spot, int x, int y, const Bounds& bounds) {
         const auto tile = static_cast<std::size_t>(y * oracle.tiles_x() + x);
-        const float min = bounds.min[tile], max = bounds.max[tile], from = bounds.gap_min[tile],
-                    to = bounds.gap_max[tile];
         if (!meets(spot, x, y, {}, {})) return 0;
-        if (!meets(spot, x, y, min, max)) return in_pyramid;
-        const bool gap = from < to,
-                   in_part = !gap || meets(spot, x, y, min, from) || meets(spot, x, y, to, max);
-        return in_pyramid | in_cell | (in_part ? +in_split : 0);
+        return meets(spot, x, y, bounds.min[tile], bounds.max[tile]) ? in_pyramid | in_cell : in_pyramid;
     }
 
     oracle::Oracle oracle;
@@ -81,7 +74,7 @@ void check(BenchScene scene, std::size_t every) {
             for (std::uint32_t id = 0; id < some.size(); ++id) {
                 std::uint32_t given = 0;
                 for (const Pair& pair : pairs.tiles[static_cast<std::size_t>(y * nx + x)])
-                    if (pair.id == id) given = pair.facts & (in_pyramid | in_cell | in_split);
+                    if (pair.id == id) given = pair.facts & (in_pyramid | in_cell);
                 const int open = truth.open;
                 const std::uint32_t facts = truth.facts(some[id], x, y, bounds);
                 if (truth.open > open) continue;  // no certificate, no answer

@@ -81,7 +81,7 @@ struct Scene {
     std::vector<Spot> spots{};
     std::vector<Lamp> lamps{};
     float to_view[4][4]{};
-    std::vector<float> min{}, max{}, gap_min{}, gap_max{};
+    std::vector<float> min{}, max{};
 };
 
 View any_view(Random& random) {
@@ -175,11 +175,9 @@ Scene make_scene(Random& random) {
         std::stable_partition(scene.spheres.begin(), scene.spheres.end(), [](const Sphere& s) { return s.z > 0; });
     any_move(scene.to_view, random);
     for (std::size_t i = 0; i < scene.view.tile_count(); ++i) {
-        const float min = random.magnitude(-3, 7), deep = min * random.magnitude(0, 4), gap = min * 1.5f;
+        const float min = random.magnitude(-3, 7), deep = min * random.magnitude(0, 4);
         scene.min.push_back(or_special(min, random));
         scene.max.push_back(or_special(deep, random));
-        scene.gap_min.push_back(or_special(gap, random));
-        scene.gap_max.push_back(or_special(deep * 0.75f, random));
     }
     return scene;
 }
@@ -242,7 +240,6 @@ void add_encodings(Hash& hash, const LightGrid<std::uint32_t>& grid) {
     add_encoded<std::uint16_t>(hash, grid,
                                {.encoding = ListEncoding::sentinel, .ids = IdWidth::u16, .capacity = 5});
     add_encoded<std::uint16_t>(hash, grid, {.ids = IdWidth::u16});
-    add_encoded<std::uint32_t>(hash, grid, {.encoding = ListEncoding::bitmask, .max_lights = 700});
 }
 
 /// One option on one instruction set.
@@ -281,23 +278,15 @@ public:
 private:
     template <class Lights>
     std::uint64_t built(const Scene& scene, const Lights& lights, const Parallel& parallel) {
-        const ZBounds bounds = {scene.min, scene.max, scene.gap_min, scene.gap_max};
+        const ZBounds bounds = {scene.min, scene.max};
         const auto inputs = inputs_for<options>(bounds, slices());
         Hash hash;
         const auto grid = binner_.bin(scene.view, lights, inputs, parallel);
         if (!grid) return 0;
         add_grid(hash, *grid);
-        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none &&
-                      options.depth_test == DepthTest::none)
+        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none && !options.depth_test)
             add_encodings(hash, *grid);
         if constexpr (options.coverage) add_coverage(hash, *grid);
-        if constexpr (options.slicing != Slicing::clusters) {
-            std::vector<std::uint32_t> bits(scene.view.tile_count() * 22);
-            hash.add(
-                std::uint64_t{binner_.bin_bits(scene.view, lights, 700, bits, inputs, parallel).has_value()});
-            for (const std::uint32_t word : bits)
-                hash.add(std::uint64_t{word});
-        }
         return hash.value();
     }
 
@@ -426,22 +415,14 @@ void check_texts() {
 void check_lists(const std::vector<Scene>& scenes) {
     check<Options{}>("rectangle", scenes);
     check<Options{.ids = IdWidth::u16}>("rectangle, 16 bits", scenes);
-    check<Options{.footprint = Footprint::silhouette}>("silhouette", scenes);
-    check<Options{.depth_test = DepthTest::interval}>("interval", scenes);
-    check<Options{.depth_test = DepthTest::box}>("box", scenes);
-    check<Options{
-        .ids = IdWidth::u16, .footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
-        "silhouette, split_box, 16 bits", scenes);
-    check<Options{.ids = IdWidth::u16, .depth_test = DepthTest::split_box}>("split_box, 16 bits", scenes);
+    check<Options{.depth_test = true}>("depth test", scenes);
+    check<Options{.ids = IdWidth::u16, .depth_test = true}>("depth test, 16 bits", scenes);
     check<Options{.slicing = Slicing::clusters}>("clusters", scenes);
-    check<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slicing = Slicing::clusters}>(
-        "silhouette, clusters, 16 bits", scenes);
-    check<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>("box, clusters", scenes);
+    check<Options{.ids = IdWidth::u16, .slicing = Slicing::clusters}>("clusters, 16 bits", scenes);
+    check<Options{.depth_test = true, .slicing = Slicing::clusters}>("depth test, clusters", scenes);
     check<Options{.slicing = Slicing::z_bins}>("z_bins", scenes);
-    check<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>("box, z_bins", scenes);
-    check<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>(
-        "silhouette, box, z_bins", scenes);
-    check<Options{.depth_test = DepthTest::interval, .coverage = true}>("interval, coverage", scenes);
+    check<Options{.depth_test = true, .slicing = Slicing::z_bins}>("depth test, z_bins", scenes);
+    check<Options{.depth_test = true, .coverage = true}>("depth test, coverage", scenes);
 }
 
 /// Of what is made of the same scenes in an environment, and the views and slices as well.

@@ -51,7 +51,7 @@ Scene make_scene() {
 template <Options options, int view = 0>
 std::vector<std::uint32_t> build(const Scene& scene, const Parallel& parallel) {
     const double to_view[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    const auto inputs = inputs_for<options>({scene.min, scene.max, {}, {}}, scene.slices);
+    const auto inputs = inputs_for<options>({scene.min, scene.max}, scene.slices);
     Binner<options> binner;
     std::vector<std::uint32_t> all;
     for (int frame = 0; frame < 20; ++frame) {
@@ -75,16 +75,15 @@ struct Job {
 int main() {
     const Scene scene = make_scene();
     Pool pool(3), other_pool(2);
-    const auto clusters = build<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>;
+    const auto clusters = build<Options{.depth_test = true, .slicing = Slicing::clusters}>;
     std::vector<Job> jobs = {
         {build<Options{}>, {}, {}},
         {build<Options{}, 1>, {}, {}},
-        {build<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval}>, {}, {}},
-        {build<Options{.depth_test = DepthTest::box}>, {}, {}},
-        {build<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>, {}, {}},
+        {build<Options{.ids = IdWidth::u16, .depth_test = true}>, {}, {}},
+        {build<Options{.depth_test = true, .slicing = Slicing::z_bins}>, {}, {}},
         {clusters, {}, {}},
         {clusters, Parallel(3, pool), {}},
-        {build<Options{.footprint = Footprint::silhouette}>, Parallel(2, other_pool), {}}};
+        {build<Options{.depth_test = true}>, Parallel(2, other_pool), {}}};
     std::vector<std::thread> running;
     for (Job& job : jobs)
         running.emplace_back([&] { job.made = job.build(scene, job.parallel); });

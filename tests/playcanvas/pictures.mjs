@@ -82,8 +82,8 @@ test('5,000 moving lights, and more than a texture has rows: as all lights in ev
 });
 
 test('each point of a light has the light in the list that the shader finds for it', async () => {
-    for (const [extent, cells, depthTest] of [[14, [32, 4, 32], 'no-depth-test'], [14, [7, 9, 33], 'box'],
-                                              [4000, [10, 3, 10], 'box']]) {
+    for (const [extent, cells, depthTest] of [[14, [32, 4, 32], false], [14, [7, 9, 33], true],
+                                              [4000, [10, 3, 10], true]]) {
         const {missing, points, moved, pairs, missing_pairs} = await page.evaluate(async given => {
             const [extent, cells, depthTest] = given;
             const stage = new Stage('lists');
@@ -336,7 +336,7 @@ test('what is refused, and dispose()', async () => {
         };
         const {lists, own} = stages;
         const twice = message(() => new ClusteredLights(lightbin, lists.app));
-        const misspelt = message(() => new ClusteredLights(lightbin, own.app, {depthtest: 'box'}));
+        const misspelt = message(() => new ClusteredLights(lightbin, own.app, {depthtest: true}));
         const late = message(() => new ClusteredLights(lightbin, own.app));
         lists.clusters.dispose();
         const disposed = message(() => lists.render());

@@ -22,7 +22,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<CullText> every;
     for (const Slicing slicing : {Slicing::none, Slicing::clusters})
-        for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
+        for (const bool depth_test : {false, true})
             for (unsigned switches = 0; switches < 64; ++switches)
                 for (const CullPass pass : cull_passes) {
                     CullShaderOptions options;
@@ -38,7 +38,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
                     // The lights matter to the first pass alone, and ids to the last.
                     const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
-                                      (depth_test == DepthTest::none && (switches & 16) != 0);
+                                      (!depth_test && (switches & 16) != 0);
                     if (switches & 1) options.prefix = "my_";
                     if (!same && cull_shader(pass, options)) every.push_back({pass, options});
                 }

@@ -50,9 +50,8 @@ inline std::string worst_anywhere(std::string text) {
 }
 
 /// A way to make a grid, whose options are both the Binner's and the shaders'.
-template <lightbin::DepthTest test, lightbin::Slicing slicing, bool world = false> struct CullWay {
-    static constexpr lightbin::DepthTest depth_test = test;
-    static constexpr lightbin::Options options{.depth_test = test, .slicing = slicing};
+template <bool depth_test, lightbin::Slicing slicing, bool world = false> struct CullWay {
+    static constexpr lightbin::Options options{.depth_test = depth_test, .slicing = slicing};
     static constexpr bool world_space = world, max_only = false;
     static constexpr float slice_margin = 0;
 };
@@ -72,7 +71,7 @@ public:
     CullTests(lightbin::ShaderLanguage language, const Share& share) : language_(language), share_(share) {}
 
     template <class Device> bool run(Device& device) {
-        using enum lightbin::DepthTest;
+        constexpr bool none = false, tested = true;
         constexpr auto tiles = lightbin::Slicing::none, clusters = lightbin::Slicing::clusters;
         smallest_and_largest(device);
         short_of_room(device);
@@ -83,15 +82,13 @@ public:
         ways<CullWay<none, tiles>>(device, "tiles");
         ways<CullWay<none, tiles, true>>(device, "tiles, world space");
         ways<CullWay<none, clusters>>(device, "clusters");
-        ways<CullWay<interval, tiles>>(device, "interval");
-        ways<CullWay<box, tiles>>(device, "box");
-        ways<CullWay<box, clusters>>(device, "clusters and box");
-        ways<CullWay<box, clusters, true>>(device, "clusters and box, world space");
-        ways<CullWay<interval, tiles, true>>(device, "interval, world space");
+        ways<CullWay<tested, tiles>>(device, "depth test");
+        ways<CullWay<tested, clusters>>(device, "clusters, depth test");
+        ways<CullWay<tested, clusters, true>>(device, "clusters, depth test, world space");
+        ways<CullWay<tested, tiles, true>>(device, "depth test, world space");
         constexpr int one_size[] = {16};
-        ways<MaxOnly<CullWay<interval, tiles>>>(device, "interval, maximum only", one_size);
-        ways<MaxOnly<CullWay<box, tiles>>>(device, "box, maximum only", one_size);
-        ways<WithMargin<CullWay<box, clusters>>>(device, "clusters and box, slices with a margin", one_size);
+        ways<MaxOnly<CullWay<tested, tiles>>>(device, "depth test, maximum only", one_size);
+        ways<WithMargin<CullWay<tested, clusters>>>(device, "clusters, depth test, slices with a margin", one_size);
         ways<WithMargin<CullWay<none, clusters>>>(device, "clusters, slices with a margin", one_size);
         for (const TextChange change : {worst_up, worst_down, worst_anywhere}) {
             if (const lightbin::detail::Dialect dialect{language_}; dialect.hlsl || dialect.webgpu)
@@ -338,7 +335,7 @@ private:
             spot.cos_half_angle = number(0, 0.866f);
         }
         LightCounts counts;
-        using Way = CullWay<DepthTest::box, Slicing::clusters>;
+        using Way = CullWay<true, Slicing::clusters>;
         const BuiltLists expected = binned<Way::options>(scene, spots, counts);
         CullCase made = simple(scene.view, {}, 2 * expected.ids.size());
         made.lights = words_of(spots);
@@ -346,12 +343,12 @@ private:
         made.options.kind = CullKind::spot;
         made.options.lights_at.stride = 8;
         made.options.slicing = Slicing::clusters;
-        made.options.depth_test = DepthTest::box;
+        made.options.depth_test = true;
         made.slices = scene.slices;
-        made.z_bounds = cull_depths(scene, {}, DepthTest::box, Slicing::clusters);
+        made.z_bounds = cull_depths(scene, {}, true, Slicing::clusters);
         CullTally tally = compare_lists(make(device, made), expected);
         tally.wrong += tally.excess * 10 > tally.entries;
-        add("ordinary spots, clusters and box", tally);
+        add("ordinary spots, clusters, depth test", tally);
     }
 
     /// One grid. Lights of world space are those of view space, moved by the inverse of a view matrix; the Binner gets
@@ -379,7 +376,7 @@ private:
         made.options.kind = spots ? CullKind::spot : CullKind::sphere;
         made.options.lights_at = {
             .stride = spots ? 11u : 5u, .centre = 1, .radius = 4, .axis = 5, .cosine = 8};
-        made.options.depth_test = Way::depth_test;
+        made.options.depth_test = Way::options.depth_test;
         made.options.slicing = slicing;
         made.options.max_only = Way::max_only;
         made.options.orthographic = scene.view.orthographic();
@@ -388,7 +385,7 @@ private:
         made.options.count_in_buffer = turn_ % 3 == 0;
         made.options.count_at = static_cast<std::uint32_t>(turn_ % 5);
         if (slicing != Slicing::none) made.slices = scene.slices;
-        made.z_bounds = cull_depths(scene, bounds, Way::depth_test, slicing);
+        made.z_bounds = cull_depths(scene, bounds, Way::options.depth_test, slicing);
         if (Way::world_space) made.to_view = to_view();
         LightCounts counts;
         const BuiltLists expected = Way::world_space
@@ -440,7 +437,7 @@ private:
 
     /// The content of the buffer `z_bounds`.
     static std::vector<float> cull_depths(const BuiltScene& scene, const std::array<std::vector<float>, 2>& bounds,
-                                          lightbin::DepthTest test, lightbin::Slicing slicing) {
+                                          bool depth_test, lightbin::Slicing slicing) {
         std::vector<float> depths;
         if (slicing == lightbin::Slicing::clusters)
             for (const lightbin::ShaderEdges& slab : lightbin::shader_slabs(scene.slices))
@@ -448,7 +445,7 @@ private:
         else
             for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
                 depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
-        if (test == lightbin::DepthTest::box)
+        if (depth_test)
             for (const lightbin::ShaderEdges& edge : lightbin::shader_edges(scene.view))
                 depths.insert(depths.end(), {edge.low, edge.high});
         return depths;

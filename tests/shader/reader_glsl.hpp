@@ -49,10 +49,7 @@ inline std::uint32_t checked_lights(std::uint32_t width) {
 /// How many lights there are.
 inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) {
     using lightbin::IdWidth;
-    return options.format.encoding == lightbin::ListEncoding::bitmask ? options.format.max_lights
-           : options.format.ids == IdWidth::u8                        ? 200
-           : options.format.ids == IdWidth::u16                       ? 50000
-                                                                      : 100000;
+    return options.format.ids == IdWidth::u8 ? 200 : options.format.ids == IdWidth::u16 ? 50000 : 100000;
 }
 
 /// Lines that loop over a pixel's list. `loop` begins the loop.

@@ -56,12 +56,9 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
             continue;
         options.storage = storage;
         const bool texels = storage == ListStorage::texel_buffer || storage == ListStorage::texture_2d;
-        for (const ListEncoding encoding :
-             {ListEncoding::offset_count, ListEncoding::sentinel, ListEncoding::bitmask})
+        for (const ListEncoding encoding : {ListEncoding::offset_count, ListEncoding::sentinel})
             for (const IdWidth ids : {IdWidth::u8, IdWidth::u16, IdWidth::u32}) {
-                if (encoding == ListEncoding::bitmask && ids != IdWidth::u32) continue;
-                options.format = {encoding, ids, encoding == ListEncoding::sentinel ? 5u : 0u,
-                                  encoding == ListEncoding::bitmask ? 100u : 0u};
+                options.format = {encoding, ids, encoding == ListEncoding::sentinel ? 5u : 0u};
                 for (const bool packed : {false, true})
                     for (const bool block : {false, true}) {
                         if (packed && (!texels || ids == IdWidth::u32)) continue;
@@ -399,9 +396,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
-        if (!few && (list.format.ids == lightbin::IdWidth::u16 ||
-                     list.format.encoding == lightbin::ListEncoding::bitmask))
-            add(large);
+        if (!few && list.format.ids == lightbin::IdWidth::u16) add(large);
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned place = 0;

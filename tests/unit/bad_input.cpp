@@ -140,7 +140,7 @@ TEST_CASE("an empty viewport") {
         REQUIRE(none);
         CHECK(none->ids().empty());
 
-        Binner<Options{.depth_test = DepthTest::interval}> pruned;
+        Binner<Options{.depth_test = true}> pruned;
         const auto bounds = reduce_depth(view, {}, {});
         REQUIRE(bounds);
         const auto tested = pruned.bin(view, lights, {.bounds = *bounds});

@@ -154,10 +154,9 @@ TEST_CASE("a box reaches as deep as its numbers say, as far as floats do") {
         }
     };
     check.operator()<Options{.slicing = Slicing::clusters, .coverage = true}>();
-    check.operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .coverage = true}>();
+    check.operator()<Options{.depth_test = true, .slicing = Slicing::clusters, .coverage = true}>();
     check.operator()<Options{.slicing = Slicing::z_bins, .coverage = true}>();
-    check.operator()<Options{.depth_test = DepthTest::interval, .coverage = true}>();
-    check.operator()<Options{.depth_test = DepthTest::box, .coverage = true}>();
+    check.operator()<Options{.depth_test = true, .coverage = true}>();
 }
 
 TEST_CASE("the functions that make boxes contain what they are named after, and no more than they must") {

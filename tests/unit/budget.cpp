@@ -115,10 +115,10 @@ TEST_CASE("a budget keeps the heaviest lights of each cell, and then the heavies
         const auto lights = test::random_lights(seed == 0 ? 0 : 1 + seed * 17, seed);
         for (int kind = 0; kind < 6; ++kind) {
             const auto weights = weights_of(lights.size(), kind, seed);
-            Binner<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette}> tiles;
+            Binner<Options{.ids = IdWidth::u16}> tiles;
             check_limits(*tiles.bin(view, lights), weights);
             if (kind == 1 || kind == 3) continue;
-            Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> clusters;
+            Binner<Options{.depth_test = true, .slicing = Slicing::clusters}> clusters;
             check_limits(*clusters.bin(view, lights, {.slices = slices}), weights);
             Binner<Options{.slicing = Slicing::z_bins}> z_bins;
             check_limits(*z_bins.bin(view, lights, {.slices = slices}), weights);

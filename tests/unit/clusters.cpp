@@ -127,7 +127,7 @@ template <Options options> void check_margin() {
 
 TEST_CASE("with a margin, a light is where shaders look it up whose own formula rounds otherwise") {
     check_margin<Options{.slicing = Slicing::clusters}>();
-    check_margin<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    check_margin<Options{.depth_test = true, .slicing = Slicing::clusters}>();
     check_margin<Options{.slicing = Slicing::z_bins}>();
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("the grid of the world of docs/depth.md has each light in the boxes th
     std::vector<Sphere> lights;
     for (int i = 0; i < 400; ++i)
         lights.push_back({x(random), y(random), z(random), range(random)});
-    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> binner;
+    Binner<Options{.depth_test = true, .slicing = Slicing::clusters}> binner;
     const auto grid = binner.bin(view, world_space(lights, glm::translate(turn, glm::vec3(-corner))),
                                  {.slices = *Slices::linear(layers, 0, 24)});
     REQUIRE(grid);

@@ -67,40 +67,18 @@ TEST_CASE("what is transparent is lit before the sky as well") {
         for (std::size_t x = 48; x < 96; ++x)
             depth[96 * y + x] = depth_of(5);
     const std::vector<glm::vec4> lights = {{0, 0, -20, 14}};
-    std::vector<float> min(3), max(3), transparent_max(3);
-    for (const bool skip : {false, true}) {
-        const DepthBuffer buffer = {.depth = depth, .skip_background = skip};
-        const auto bounds =
-            reduce_depth(view, buffer, {.min = min, .max = max, .transparent_max = transparent_max});
-        REQUIRE(bounds);
-        CHECK(transparent_max[0] == view.far_depth());
-        CHECK(transparent_max[1] == view.far_depth());
-        CHECK(transparent_max[2] < 5.01f);
-        CHECK(max[0] == (skip ? -HUGE_VALF : view.far_depth()));
-        CHECK((max[1] < 5.01f) == skip);
-
-        Binner<Options{.depth_test = DepthTest::box}> binner;
-        const auto grids =
-            binner.bin_transparency(view, std::vector<glm::vec4>{{0, 0, -20, 5}}, {.bounds = *bounds});
-        REQUIRE(grids);
-        const std::vector<std::uint32_t> none, listed = {0};
-        const auto transparent = test::to_lists(grids->transparent), opaque = test::to_lists(grids->opaque);
-        CHECK(transparent[1] == listed);
-        CHECK(opaque[1] == (skip ? none : listed));
-        const auto wide = binner.bin_transparency(view, lights, {.bounds = *bounds});
-        REQUIRE(wide);
-        CHECK(test::to_lists(wide->transparent) == test::Lists{listed, listed, none});
-
-        // Without the maximum that counts the sky, it is refused.
-        const auto without = reduce_depth(view, buffer, {.min = min, .max = max});
-        const auto refused = binner.bin_transparency(view, lights, {.bounds = *without});
-        CHECK(refused.has_value() == !skip);
-        if (!refused) CHECK(refused.error().code == ErrorCode::no_transparent_max);
-        // The opaque lists alone need none; nor does one that is not pruned by a maximum.
-        CHECK(binner.bin(view, lights, {.bounds = *without}));
-        const auto nearest = reduce_depth(view, buffer, {.min = min});
-        CHECK(binner.bin_transparency(view, lights, {.bounds = *nearest}));
-    }
+    std::vector<float> min(3), max(3), farthest(3);
+    const ZBounds opaque = *reduce_depth(view, {.depth = depth, .skip_background = true}, {.min = min, .max = max}),
+                  transparent = *reduce_depth(view, {.depth = depth}, {.max = farthest});
+    CHECK(farthest[0] == view.far_depth());
+    CHECK(farthest[1] == view.far_depth());
+    CHECK(farthest[2] < 5.01f);
+    CHECK(max[0] == -HUGE_VALF);
+    CHECK(max[1] < 5.01f);
+    constexpr Options options = {.depth_test = true};
+    const std::vector<std::uint32_t> none, listed = {0};
+    CHECK(test::lists<options>(view, lights, opaque) == test::Lists{none, none, none});
+    CHECK(test::lists<options>(view, lights, transparent) == test::Lists{listed, listed, none});
 }
 
 namespace {
@@ -143,13 +121,12 @@ TEST_CASE("an error's sentence has its numbers, with their sign where what was g
 
 TEST_CASE("every enum has words") {
     check_words(Isa::scalar, Isa::avx512);
-    check_words(Footprint::rectangle, Footprint::silhouette);
-    check_words(DepthTest::none, DepthTest::split_box);
+    check_words(Slicing::none, Slicing::z_bins);
     check_words(ClipDepth::minus_one_to_one, ClipDepth::zero_to_one);
     check_words(WindowOrigin::lower_left, WindowOrigin::upper_left);
     check_words(DepthFormat::float32, DepthFormat::unorm16);
     check_words(ErrorCode::matrix_not_finite, ErrorCode::scratch_too_large);
-    check_words(ListEncoding::offset_count, ListEncoding::bitmask);
+    check_words(ListEncoding::offset_count, ListEncoding::sentinel);
     check_words(ShaderLanguage::glsl_430, ShaderLanguage::wgsl);
     check_words(ShaderResource::uniform_vector, ShaderResource::writable_buffer);
     check_words(TexelFormat::none, TexelFormat::r32f);

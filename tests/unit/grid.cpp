@@ -1,4 +1,4 @@
-// The light grid itself: order, determinism, both id types, Z bounds, transparency, counts. That no light
+// The light grid itself: order, determinism, both id types, Z bounds, counts. That no light
 // is missed is proved in tests/oracle.
 #include "scene.hpp"
 
@@ -15,16 +15,7 @@ using namespace lightbin;
 
 namespace {
 
-constexpr Options by_interval = {.depth_test = DepthTest::interval};
-
-std::vector<float> random_floats(std::size_t count, float low, float high, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> value(low, high);
-    std::vector<float> values(count);
-    for (float& v : values)
-        v = value(random);
-    return values;
-}
+constexpr Options tested = {.depth_test = true};
 
 }  // namespace
 
@@ -53,11 +44,11 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
     const std::vector<glm::vec4> lights = {{0, 0, -5, 1}, {0, 0, 0, HUGE_VALF}};
     const auto everywhere = test::lists(view, lights);
     const std::vector<float> nan(tiles, std::nanf("")), inf(tiles, HUGE_VALF), minus_inf(tiles, -HUGE_VALF);
-    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
-    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
-    CHECK(test::entries(test::lists<by_interval>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
+    CHECK(test::lists<tested>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
+    CHECK(test::lists<tested>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
+    CHECK(test::entries(test::lists<tested>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
           0);  // empty tiles
-    CHECK(test::entries(test::lists<by_interval>(view, lights, ZBounds{.min = inf, .max = inf})) ==
+    CHECK(test::entries(test::lists<tested>(view, lights, ZBounds{.min = inf, .max = inf})) ==
           tiles);  // the infinite one
 
     // A tile of NaN among others of which all are in front of the light, or behind it.
@@ -67,31 +58,10 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
         std::vector<float> min(tiles, depth), max(tiles, depth + 1);
         min[middle] = max[middle] = std::nanf("");
         const auto lists =
-            test::lists<by_interval>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
+            test::lists<tested>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
         CHECK(lists[middle].size() == 1);
         CHECK(test::entries(lists) == 1);
     }
-}
-
-TEST_CASE("transparency lists: one call gives what two Binners give, of each kind of light") {
-    constexpr Options options = {.ids = IdWidth::u16, .depth_test = DepthTest::box};
-    const View view = test::view({960, 540}, 16);
-    const test::Kinds kinds = test::random_kinds(1500, 300, 300, 20);
-    const auto min = random_floats(view.tile_count(), 5.0f, 30.0f, 21),
-               max = random_floats(view.tile_count(), 30.0f, 60.0f, 22);
-    const auto check = [&](const auto& lights) {
-        Binner<options> binner;
-        const auto grids = binner.bin_transparency(view, lights, {.bounds = {.min = min, .max = max}});
-        REQUIRE(grids);
-        const auto opaque = test::to_lists(grids->opaque), transparent = test::to_lists(grids->transparent);
-        CHECK(opaque == test::lists<options>(view, lights, ZBounds{.min = min, .max = max}));
-        CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
-        CHECK(test::is_superset(transparent, opaque));
-        CHECK(test::entries(transparent) > test::entries(opaque));
-    };
-    check(kinds.spheres);
-    check(kinds.spots);
-    check(kinds.boxes);
 }
 
 TEST_CASE("what became of the lights, and how long the lists are") {

@@ -49,14 +49,10 @@ TEST_CASE("joined arrays give the lists of each alone, one after another") {
          {test::random_kinds(500, 300, 200, 1), test::random_kinds(1, 0, 70, 2), test::random_kinds(0, 65, 0, 3)})
         test::on_machine_tiers([&]<Isa isa> {
             check_joined<Options{.isa = isa}>(view, kinds);
-            check_joined<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .isa = isa}>(view, kinds);
-            check_joined<Options{.depth_test = DepthTest::interval, .isa = isa}>(view, kinds);
-            check_joined<Options{.depth_test = DepthTest::box, .isa = isa}>(view, kinds);
-            check_joined<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box, .isa = isa}>(
-                view, kinds);
+            check_joined<Options{.ids = IdWidth::u16, .depth_test = true, .isa = isa}>(view, kinds);
             check_joined<Options{.slicing = Slicing::clusters, .isa = isa}>(view, kinds);
-            check_joined<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .isa = isa}>(view, kinds);
-            check_joined<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = true, .slicing = Slicing::clusters, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = true, .slicing = Slicing::z_bins, .isa = isa}>(view, kinds);
         });
 }
 
@@ -64,14 +60,14 @@ TEST_CASE("joined arrays may be in spaces of their own, and of the caller's type
     const View view = test::view({640, 360}, 32);
     const test::Kinds kinds = test::random_kinds(200, 150, 100, 7);
     const glm::mat4 matrix = glm::rotate(glm::translate(glm::mat4(1.0f), {3.0f, -2.0f, 4.0f}), 0.5f, {1.0f, 2.0f, 3.0f});
-    constexpr Options box = {.depth_test = DepthTest::box};
+    constexpr Options tested = {.depth_test = true};
     const auto spots = world_space(kinds.spots, matrix);
-    test::Lists expected = joined_lists<box>(view, kinds.spheres);
-    append(expected, joined_lists<box>(view, spots), kinds.spheres.size());
-    append(expected, joined_lists<box>(view, kinds.boxes), kinds.spheres.size() + kinds.spots.size());
-    CHECK(joined_lists<box>(view, lights(std::span(kinds.spheres), spots, view_space(kinds.boxes))) == expected);
+    test::Lists expected = joined_lists<tested>(view, kinds.spheres);
+    append(expected, joined_lists<tested>(view, spots), kinds.spheres.size());
+    append(expected, joined_lists<tested>(view, kinds.boxes), kinds.spheres.size() + kinds.spots.size());
+    CHECK(joined_lists<tested>(view, lights(std::span(kinds.spheres), spots, view_space(kinds.boxes))) == expected);
     // A temporary span inside view_space() refers to an array that lives on.
-    CHECK(joined_lists<box>(view, lights(view_space(std::span(kinds.spheres)), spots, kinds.boxes)) == expected);
+    CHECK(joined_lists<tested>(view, lights(view_space(std::span(kinds.spheres)), spots, kinds.boxes)) == expected);
 }
 
 TEST_CASE("too many lights in all arrays together are refused") {

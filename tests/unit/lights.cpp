@@ -23,7 +23,7 @@ const glm::mat4 full_turn = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(gl
 
 /// With lights in this form, the lists are those of the spheres, also where a depth test reads the lights again.
 void check_form(const auto& lights, const std::vector<glm::vec4>& spheres) {
-    constexpr Options tested = {.depth_test = DepthTest::box};
+    constexpr Options tested = {.depth_test = true};
     const std::vector<float> low(full_view.tile_count(), 5.0f), high(full_view.tile_count(), 40.0f);
     const ZBounds bounds = {.min = low, .max = high};
     CHECK(test::lists(full_view, lights) == test::lists(full_view, spheres));
@@ -233,7 +233,7 @@ TEST_CASE("a spot with the cosine -1 is its sphere, whatever its axis is") {
               test::id_lists<options>(full_view, world_space(spheres, full_turn)));
     };
     test::on_machine_tiers([&]<Isa isa> { check.operator()<Options{.isa = isa}>(); });
-    check.operator()<Options{.depth_test = DepthTest::box}>();
+    check.operator()<Options{.depth_test = true}>();
     Binner<> binner;
     CHECK(binner.bin(full_view, spots)->light_counts().rejected == 0);
     spots = {{0, 0, -5, 1, 0, 0, 0, -0.99999994f}, {0, 0, -5, nan, 0, 0, 0, -1}, {nan, 0, -5, 1, 0, 0, 0, -1}};

@@ -206,13 +206,9 @@ Lists id_lists(const lightbin::View& view, const LightRange& lights, const light
 template <class Visit> void on_rungs(Visit visit) {
     using namespace lightbin;
     visit.template operator()<Options{}>();
-    visit.template operator()<Options{.footprint = Footprint::silhouette}>();
-    visit.template operator()<Options{.depth_test = DepthTest::interval}>();
-    visit.template operator()<Options{.depth_test = DepthTest::box}>();
-    visit.template operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
-    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-    visit.template operator()<Options{
-        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+    visit.template operator()<Options{.depth_test = true}>();
+    visit.template operator()<Options{.depth_test = true, .slicing = Slicing::clusters}>();
+    visit.template operator()<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
 }
 
 /// Checks that each rung lists less than three quarters of the entries of the spheres that lights are parts of, no light

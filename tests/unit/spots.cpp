@@ -37,17 +37,11 @@ TEST_CASE("whole spheres as spots are binned as spheres are") {
     }
     const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
     test::on_rungs([&]<Options options> {
-        // A row of a sphere's silhouette has a tile even where it only may touch one.
-        const auto same = [](const test::Lists& of_spots, const test::Lists& of_spheres) {
-            if (options.footprint == Footprint::rectangle) return of_spots == of_spheres;
-            return test::is_superset(of_spheres, of_spots) &&
-                   test::entries(of_spots) >= test::entries(of_spheres) * 999 / 1000;
-        };
         const auto expected = test::id_lists<options>(view, spheres);
-        CHECK(same(test::id_lists<options>(view, spots), expected));
-        CHECK(same(test::id_lists<options>(view, beyond_138_degrees), expected));
-        CHECK(same(test::id_lists<options>(view, world_space(spots, to_view)),
-                   test::id_lists<options>(view, world_space(spheres, to_view))));
+        CHECK(test::id_lists<options>(view, spots) == expected);
+        CHECK(test::id_lists<options>(view, beyond_138_degrees) == expected);
+        CHECK(test::id_lists<options>(view, world_space(spots, to_view)) ==
+              test::id_lists<options>(view, world_space(spheres, to_view)));
     });
 }
 

@@ -88,8 +88,8 @@ template <Options options> void check_shared(const View& view, const Slices& sli
         offset += range.count;
     }
     CHECK(offset == ids);
-    // encode() takes the grid of all views: the last third of the bitmasks is that of the last view.
-    const ListFormat format = {.encoding = ListEncoding::bitmask, .max_lights = 700};
+    // encode() takes the grid of all views: the last third of the lists is that of the last view.
+    const ListFormat format = {.encoding = ListEncoding::sentinel, .capacity = 700};
     const auto bytes_of = [&](const LightGrid<Id>& grid) {
         std::vector<std::byte> bytes(encoded_bytes(format, grid.ranges().size(), grid.ids().size()));
         REQUIRE(encode(grid, format, bytes));

@@ -81,8 +81,8 @@ template <Options options> void compare(const Slices& slices) {
     lights[3].w = std::numeric_limits<float>::quiet_NaN();
     lights[5].w = 1000;
     const View view = test::view({640, 480}, 32);
-    std::vector<float> min(view.tile_count(), 5), max(view.tile_count(), 30), all(view.tile_count(), 50);
-    const ZBounds bounds = {.min = min, .max = max, .transparent_max = all};
+    std::vector<float> min(view.tile_count(), 5), max(view.tile_count(), 30);
+    const ZBounds bounds = {.min = min, .max = max};
     Binner<options> binner;
     Binner<without(options)> unranked;
     const auto grid = binner.bin(view, lights, inputs_for<options>(bounds, slices));
@@ -91,15 +91,6 @@ template <Options options> void compare(const Slices& slices) {
     REQUIRE(expected);
     check_bins(*grid, lights, slices);
     CHECK((own_ids(*grid) == test::to_lists(*expected)));
-    if constexpr (options.depth_test != DepthTest::none) {
-        const auto grids = binner.bin_transparency(view, lights, {.slices = slices, .bounds = bounds});
-        const auto both = unranked.bin_transparency(view, lights, {.bounds = bounds});
-        REQUIRE(grids);
-        REQUIRE(both);
-        check_bins(grids->transparent, lights, slices);
-        CHECK((own_ids(grids->opaque) == test::to_lists(both->opaque)));
-        CHECK((own_ids(grids->transparent) == test::to_lists(both->transparent)));
-    }
 }
 
 template <Options options> void compare_laws() {
@@ -114,10 +105,7 @@ template <Options options> void compare_laws() {
 TEST_CASE("z-bins have the least and greatest rank of the lights in them, and the lists are the same lights") {
     compare_laws<Options{.slicing = Slicing::z_bins}>();
     compare_laws<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>();
-    compare_laws<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
-    compare_laws<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
-    compare_laws<Options{
-        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
 }
 
 TEST_CASE("the part of a list that lies in a bin") {

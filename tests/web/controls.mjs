@@ -167,7 +167,7 @@ test('keys fly, choose cameras and reach the main controls', async t => {
     await page.keyboard.press('h');
     assert.equal(await page.locator('#look').inputValue(), 'heat');
     await page.keyboard.press('m');
-    assert.equal(await page.locator('#method').inputValue(), 'interval');
+    assert.equal(await page.locator('#method').inputValue(), 'z_bounds');
     await page.keyboard.press(']');
     assert.equal(await text_of(page, 'tile_out'), '24 pixels');
     await page.keyboard.press('+');

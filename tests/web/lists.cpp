@@ -32,10 +32,10 @@ private:
 };
 
 void print_lists(Scene scene, const std::string& name, double seconds) {
-    static constexpr const char* names[] = {"none", "interval", "box", "z_bins", "clusters"};
+    static constexpr const char* names[] = {"none", "z_bounds", "z_bins", "clusters"};
     scene.boxes.clear();  // the page has none
     NativeLists native(scene);
-    for (int method = 0; method < 5; ++method) {
+    for (int method = 0; method < 4; ++method) {
         FrameSettings settings;
         settings.camera = scene.cameras[0];
         settings.width = 640;
@@ -45,8 +45,7 @@ void print_lists(Scene scene, const std::string& name, double seconds) {
         const lightbin::View view = view_of(settings);
         const std::vector<float> min(view.tile_count(), 10), max(view.tile_count(), 60),
             glass(view.tile_count(), 100);
-        const Frame frame = native.frame(
-            view, settings, {.min = min, .max = max, .transparent_max = glass, .background_skipped = true});
+        const Frame frame = native.frame(view, settings, {.min = min, .max = max}, {.max = glass});
         Hash lists;
         lists.add(frame.ranges);
         lists.add(frame.ids);

@@ -29,7 +29,7 @@ function list_lines(scene, seconds) {
     const tiles = 40 * 23, {glass, cameras: [camera]} = scenes.scene, has_glass = glass.length > 0;
     const of_all = depth => new Float32Array(tiles).fill(depth);
     const bounds = {min: of_all(10), max: of_all(60), ...has_glass && {glass_max: of_all(100)}};
-    return ['none', 'interval', 'box', 'z_bins', 'clusters'].map(method => {
+    return ['none', 'z_bounds', 'z_bins', 'clusters'].map(method => {
         const frame = lighting.frame({...settings, camera, method, seconds}, bounds);
         const {ranges, ids, glass_ranges, glass_ids, slices, bins, lights} = frame;
         return [scene, seconds, method, ids.length,
@@ -80,7 +80,7 @@ function sentences() {
         ...Array(30).fill([() => scenes.open(nested_glb(20000), 'a.glb'), /^this is too much for the browser: /]),
         [() => scenes.make('city', 0), /^the city has 1 to 1000000 lights, not 0$/],
         [() => lighting.frame({...settings, camera, tile_size: -1}), /^the tile size must be at least 1 pixel/],
-        [() => lighting.frame({...settings, camera, method: 'box'}, {min: three, max: three}), /Z bounds/],
+        [() => lighting.frame({...settings, camera, method: 'z_bounds'}, {min: three, max: three}), /Z bounds/],
         [() => lighting.frame({...settings, camera, method: 'clusters', slices: 10000000}), /4294967295|memory/],
         [() => lighting.frame({...settings, camera, method: 'basic'}), /^there is no method 'basic'$/],
     ];
@@ -95,7 +95,7 @@ function sentences() {
 // What the GPU lists lights by: as many cells as the CPU's table has ranges, and memory for each buffer.
 async function plans_for_gpu() {
     const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]};
-    for (const method of ['none', 'interval', 'box', 'clusters']) {
+    for (const method of ['none', 'z_bounds', 'clusters']) {
         const frame = await lighting.gpu_frame({...seen, method}, 5000, 7000), {plans, lights, shapes, edges} = frame;
         const bounds = {min: new Float32Array(920), max: new Float32Array(920).fill(60)};
         const {ranges, slices} = lighting.frame({...seen, method}, bounds);

@@ -135,13 +135,10 @@ Count count_missing(NativeLists& native, const FrameSettings& settings, double d
     const lightbin::View view = view_of(settings);
     Dice dice;  // the same points again where a light is left out
     const Bounds bounds = made_bounds(dice, view, deepest);
-    const Frame frame = native.frame(view, settings,
-                                     {.min = bounds.min,
-                                      .max = bounds.max,
-                                      .transparent_max = bounds.glass_max,
-                                      .background_skipped = true});
+    const Frame frame =
+        native.frame(view, settings, {.min = bounds.min, .max = bounds.max}, {.max = bounds.glass_max});
     const DepthMethod method = settings.bin.method;
-    const bool bounded = method == DepthMethod::interval || method == DepthMethod::box;
+    const bool bounded = method == DepthMethod::z_bounds;
     const glm::dmat4 to_view = glm::inverse(settings.camera.to_world);
     const std::vector<Light>& lights = native.scene().lights;
     CHECK(frame.lights.size() == lights.size() + native.scene().suns.size());
@@ -186,8 +183,8 @@ FrameSettings settings_for(const Camera& camera, DepthMethod method) {
     return settings;
 }
 
-constexpr DepthMethod methods[] = {DepthMethod::none, DepthMethod::interval, DepthMethod::box,
-                                   DepthMethod::z_bins, DepthMethod::clusters};
+constexpr DepthMethod methods[] = {DepthMethod::none, DepthMethod::z_bounds, DepthMethod::z_bins,
+                                   DepthMethod::clusters};
 
 // The module's lights are the renderer's.
 void check_lights(Stage& stage, NativeLists& native, const FrameSettings& settings) {
@@ -195,7 +192,7 @@ void check_lights(Stage& stage, NativeLists& native, const FrameSettings& settin
         stage.place(settings.camera.to_world, settings.seconds, settings.bin.dropped_light);
     FrameSettings in_ids = settings;
     in_ids.bin.method = DepthMethod::none;  // in which no light has another place
-    const Frame frame = native.frame(view_of(in_ids), in_ids, {});
+    const Frame frame = native.frame(view_of(in_ids), in_ids, {}, {});
     const auto bytes_of = [](const auto& items) { return std::as_bytes(std::span(items)); };
     CHECK(std::ranges::equal(bytes_of(placed.lights), bytes_of(frame.lights)));
     REQUIRE(placed.shapes.size() == stage.scene().lights.size());

@@ -47,12 +47,12 @@ public:
     const Scene& scene() const { return scene_; }
 
     Frame frame(const lightbin::View& view, const FrameSettings& settings,
-                const lightbin::ZBounds& z_bounds) {
+                const lightbin::ZBounds& z_bounds, const lightbin::ZBounds& glass_z_bounds) {
         move_lights(places_, settings.seconds, scene_.lights);
         binned_.place(glm::inverse(settings.camera.to_world));
         BinSettings bin = settings.bin;
         bin.glass = !scene_.transparent.empty();
-        const auto [opaque, glass] = binned_.bin(view, bin, z_bounds);
+        const auto [opaque, glass] = binned_.bin(view, bin, z_bounds, glass_z_bounds);
         Frame frame = {binned_.in_order(), opaque.ranges(), glass.ranges(), opaque.ids(), glass.ids(), {},
                        opaque.ranks().bins};
         if (binned_.slices()) frame.slices = lightbin::shader_slices(*binned_.slices());

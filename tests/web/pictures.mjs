@@ -7,7 +7,7 @@ import {Browser, compare, mean_difference, picture, text_of, wait_for_text} from
 
 const scenes = {city: /^300 lights/, street: /^598 lights/, nova: /^255 lights/, darkness: /^226 lights/};
 const renderers = {webgl: 'WebGL 2', webgpu: 'WebGPU'};
-const methods_of = renderer => ['none', 'clusters', 'interval', 'box', ...renderer === 'webgl' ? ['z_bins'] : []];
+const methods_of = renderer => ['none', 'clusters', 'z_bounds', ...renderer === 'webgl' ? ['z_bins'] : []];
 
 let browser;
 before(async () => { browser = await Browser.start(); });

@@ -28,15 +28,14 @@ inline std::string to_string(const Verdict& verdict) {
 }
 
 LIGHTBIN_SMALL inline std::string Advice::text() const {
-    std::string lines = "   cost  tile  footprint   depth test  slicing      entries   build us  "
+    std::string lines = "   cost  tile  depth test  slicing      entries   build us  "
                         "M evaluations   total us\n";
     for (const Plan& plan : plans()) {
         char tile[16] = "-", line[160];
         if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
-        std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
+        std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
                       plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
-                      plan.tiled ? to_string(plan.footprint) : "no tiling",
-                      plan.tiled ? to_string(plan.depth_test) : "-",
+                      !plan.tiled ? "no tiling" : plan.depth_test ? "yes" : "no",
                       plan.tiled ? to_string(plan.slicing) : "-",
                       static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
                       plan.evaluations * 1e-6, plan.total_ns * 1e-3);
@@ -49,11 +48,9 @@ LIGHTBIN_SMALL inline std::vector<Verdict> Advice::verdicts(const Plan& plan) co
     constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
         {"tiles", [](const Plan& p) { return p.tiled; }},
         {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
-        {"box", [](const Plan& p) { return p.tiled && p.depth_test >= DepthTest::box; }},
-        {"split boxes", [](const Plan& p) { return p.tiled && p.depth_test == DepthTest::split_box; }},
+        {"depth test", [](const Plan& p) { return p.tiled && p.depth_test; }},
         {"clusters", [](const Plan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
-        {"z-bins", [](const Plan& p) { return p.tiled && p.slicing == Slicing::z_bins; }},
-        {"silhouettes", [](const Plan& p) { return p.tiled && p.footprint == Footprint::silhouette; }}};
+        {"z-bins", [](const Plan& p) { return p.tiled && p.slicing == Slicing::z_bins; }}};
     std::vector<Verdict> all;
     for (const auto& [part, has] : parts) {
         Verdict verdict = {.part = part, .keep = has(plan), .instead = {}};
@@ -81,40 +78,28 @@ inline std::string to_string(const Advice& advice) {
 
 namespace detail {
 
-/// The options that advise() measures. Silhouettes with a depth test are not among them: they were the cheapest in no
-/// scene on AVX-512, and the cheapest by at most 1 % on SSE2, because the boxes of the depth test leave few
-/// tiles that only the silhouette would exclude.
-inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth_test = DepthTest::none},
-                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
-                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
-                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
-                                      {.footprint = Footprint::silhouette, .depth_test = DepthTest::none}};
+/// The options that advise() measures.
+inline constexpr Options weighed[] = {{}, {.depth_test = true}};
 
-/// The options that advise_slices() measures. Silhouettes with a box depth test are among them: without them, the best
-/// plan cost up to 10 % more where evaluating one light in one pixel cost 1 ns.
-inline constexpr Options weighed_sliced[] = {
-    {.footprint = Footprint::rectangle},
-    {.footprint = Footprint::silhouette},
-    {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
-    {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
-    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+/// The options that advise_slices() measures.
+inline constexpr Options weighed_sliced[] = {{},
+                                             {.slicing = Slicing::z_bins},
+                                             {.slicing = Slicing::clusters},
+                                             {.depth_test = true, .slicing = Slicing::clusters}};
 
-/// Returns `base` with the footprint, depth test and slicing of `row`, a row of a table of options to be measured.
+/// Returns `base` with the depth test and slicing of `row`, a row of a table of options to be measured.
 constexpr Options weighed_options(Options base, const Options& row) {
-    base.footprint = row.footprint;
     base.depth_test = row.depth_test;
     base.slicing = row.slicing;
     return base;
 }
 
-/// Searches `table`, an array of Options, from row i on for a plan's footprint, depth test and slicing. Calls
-/// visit.operator()<options>() with `base` and these three, and returns its result.
+/// Searches `table`, an array of Options, from row i on for a plan's depth test and slicing. Calls
+/// visit.operator()<options>() with `base` and these two, and returns its result.
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
-    const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test &&
-                       plan.slicing == options.slicing;
+    const bool found = plan.depth_test == options.depth_test && plan.slicing == options.slicing;
     if constexpr (i + 1 < std::size(table))
         if (!found) return with_options_from<table, base, i + 1>(plan, visit);
     LIGHTBIN_ASSERT(found);
@@ -126,8 +111,8 @@ inline float bound(std::span<const float> side, std::size_t tile, float unbounde
     return side.empty() || std::isnan(side[tile]) ? unbounded : side[tile];
 }
 
-/// Calls visit(x, y, tile, low, high) for the tiles in which something may be drawn: the tile's first pixel, its index,
-/// and its Z bounds. Tiles whose minimum exceeds their maximum are empty.
+/// Calls visit(x, y, low, high) for the tiles in which something may be drawn: the tile's first pixel and its Z bounds.
+/// Tiles whose minimum exceeds their maximum are empty.
 template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
     const auto [width, height] = view.viewport();
     const int size = view.tile_size();
@@ -135,7 +120,7 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
     for (int y = 0; y < height; y += size)
         for (int x = 0; x < width; x += size, ++tile) {
             const float low = bound(bounds.min, tile, -infinity), high = bound(bounds.max, tile, infinity);
-            if (!(low > high)) visit(x, y, tile, low, high);
+            if (!(low > high)) visit(x, y, low, high);
         }
 }
 
@@ -144,43 +129,20 @@ struct WeighedGrid {
     View view;
     /// The caller's Z bounds or, for tiles larger than the caller's, merged bounds, which the std::vectors below hold.
     ZBounds bounds;
-    std::vector<float> lowest, highest, gap_begin, gap_end;
+    std::vector<float> lowest, highest;
 
-    /// Merges the Z bounds of the caller's fine tiles. A fine tile is assumed to show all depths between its bounds
-    /// except those in its gap. So a merged gap, which lies around the middle of the merged bounds, is at most as wide
-    /// as the one that reduce_depth() would find.
+    /// Merges the Z bounds of the caller's fine tiles.
     WeighedGrid(const View& fine, const ZBounds& of_fine, int tile_size)
         : view(*fine.with_tile_size(tile_size)), bounds(of_fine), lowest(view.tile_count(), infinity),
-          highest(view.tile_count(), -infinity), gap_begin(highest), gap_end(lowest) {
+          highest(view.tile_count(), -infinity) {
         if (tile_size == fine.tile_size()) return;
-        const auto tile_at = [&](int x, int y) {
-            return static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
-        };
-        for_each_drawn(fine, of_fine, [&](int x, int y, std::size_t, float low, float high) {
-            const std::size_t tile = tile_at(x, y);
+        for_each_drawn(fine, of_fine, [&](int x, int y, float low, float high) {
+            const auto tile = static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
             lowest[tile] = (std::min)(lowest[tile], low);
             highest[tile] = (std::max)(highest[tile], high);
         });
-        for_each_drawn(fine, of_fine, [&](int x, int y, std::size_t from, float low, float high) {
-            const std::size_t tile = tile_at(x, y);
-            const float middle = 0.5f * std::clamp(lowest[tile], -FLT_MAX, FLT_MAX) +
-                                 0.5f * std::clamp(highest[tile], -FLT_MAX, FLT_MAX);
-            const auto draw = [&](float nearest, float farthest) {
-                if (nearest <= middle)
-                    gap_begin[tile] = (std::max)(gap_begin[tile], (std::min)(farthest, middle));
-                if (farthest >= middle)
-                    gap_end[tile] = (std::min)(gap_end[tile], (std::max)(nearest, middle));
-            };
-            const float end = bound(of_fine.gap_min, from, infinity),
-                        begin = bound(of_fine.gap_max, from, -infinity);
-            draw(low, end < begin ? end : high);
-            draw(end < begin ? begin : low, high);
-        });
         if (!bounds.min.empty()) bounds.min = lowest;
         if (!bounds.max.empty()) bounds.max = highest;
-        if (!bounds.gap_min.empty()) bounds.gap_min = gap_begin;
-        if (!bounds.gap_max.empty()) bounds.gap_max = gap_end;
-        bounds.transparent_max = {};  // is not merged, as bin() does not read it
     }
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
@@ -227,7 +189,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             ++grid;
         const auto with = [&]<Options options>() -> std::optional<Error> {
             constexpr bool with_bounds =
-                options.depth_test != DepthTest::none && options.slicing == Slicing::none;
+                options.depth_test && options.slicing == Slicing::none;
             const Slices& by = options.slicing == Slicing::clusters ? slices.clusters : slices.z_bins;
             const auto start = Clock::now();
             const auto built = std::get<Binner<options>>(binners).bin(
@@ -262,13 +224,9 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
-            const ZBounds& given = grid.bounds;
-            const bool lacks_bounds = options.depth_test == DepthTest::split_box
-                                          ? given.gap_min.empty() || given.gap_max.empty()
-                                          : given.min.empty() && given.max.empty();
-            if (options.depth_test != DepthTest::none && options.slicing == Slicing::none && lacks_bounds) continue;
-            Plan plan = {.footprint = options.footprint,
-                         .depth_test = options.depth_test,
+            const bool lacks_bounds = grid.bounds.min.empty() && grid.bounds.max.empty();
+            if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) continue;
+            Plan plan = {.depth_test = options.depth_test,
                          .slicing = options.slicing,
                          .tile_size = grid.view.tile_size(),
                          .build_ns = HUGE_VAL};
@@ -310,7 +268,7 @@ template <Options base, class Visit> decltype(auto) with_sliced_options(const Pl
 
 template <Options base, class Clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs, const ZBounds& bounds) {
-    for (const std::span<const float> side : {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max})
+    for (const std::span<const float> side : {bounds.min, bounds.max})
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
@@ -318,7 +276,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     const int size = view.tile_size();
     const Slices one = *Slices::from_boundaries({});  // read by no plan
     return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
-        detail::for_each_drawn(view, bounds, [&](int x, int y, std::size_t, float low, float) {
+        detail::for_each_drawn(view, bounds, [&](int x, int y, float low, float) {
             visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
         });
     });

@@ -56,7 +56,6 @@ inline constexpr lightbin_error error_numbers[] = {
     LIGHTBIN_DEPTH_BUFFER_TOO_SMALL,
     LIGHTBIN_SAMPLES_OUT_OF_RANGE,
     LIGHTBIN_ROW_PITCH_TOO_SMALL,
-    LIGHTBIN_NO_TRANSPARENT_MAX,
     LIGHTBIN_NO_SLICES,
     LIGHTBIN_SLICE_RANGE_EMPTY,
     LIGHTBIN_SLICES_DO_NOT_ASCEND,
@@ -65,9 +64,7 @@ inline constexpr lightbin_error error_numbers[] = {
     LIGHTBIN_LIGHT_BUFFER_TOO_SMALL,
     LIGHTBIN_IDS_TOO_NARROW,
     LIGHTBIN_LIST_BUFFER_TOO_SMALL,
-    LIGHTBIN_BIT_BUFFER_TOO_SMALL,
     LIGHTBIN_CAPACITY_UNKNOWN,
-    LIGHTBIN_MAX_LIGHTS_UNKNOWN,
     LIGHTBIN_BLOCK_SIZE_UNKNOWN,
     LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL,
     LIGHTBIN_NO_STORAGE_BUFFERS,
@@ -78,7 +75,6 @@ inline constexpr lightbin_error error_numbers[] = {
     LIGHTBIN_NO_SETS,
     LIGHTBIN_NO_PUSH_CONSTANTS,
     LIGHTBIN_NO_MULTISAMPLE_TEXTURES,
-    LIGHTBIN_NO_SPLIT_BOX_SHADER,
     LIGHTBIN_NO_SUCH_SLICING_SHADER,
     LIGHTBIN_NO_WAVE_OPERATIONS,
     LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE,
@@ -123,9 +119,6 @@ inline const char* sentence_of(std::int32_t error) {
     case LIGHTBIN_NOT_READ:
         return "the options do not read this input: bounds want a depth test, and slices a slicing; "
                "clusters read no bounds, and lights in view space no matrix";
-    case LIGHTBIN_OPTIONS_NOT_TOGETHER:
-        return "this binner's options do not go together: clusters have no interval and no split_box test "
-               "and no bitmasks, and grids for transparency need Z bounds";
     case LIGHTBIN_BUFFER_TOO_SMALL:
         return "this memory holds {available} elements, and {needed} are needed";
     case LIGHTBIN_COVERAGE_IS_OFF:

@@ -14,9 +14,12 @@ struct lightbin_binner {
 namespace lightbin {
 namespace c {
 
-inline lightbin_grid grid_of(const LightRanks& ranks, const LightCounts& counts) {
+/// Writes a LightGrid to the caller's struct.
+template <class Id> void write_grid(const LightGrid<Id>& from, lightbin_grid* to) {
     static_assert(sizeof(ListRange) == sizeof(lightbin_range) &&
                   sizeof(BinRange) == sizeof(lightbin_bin_range));
+    const LightCounts& counts = from.light_counts();
+    const LightRanks& ranks = from.ranks();
     lightbin_grid grid = {};
     grid.lights = counts.lights;
     grid.rejected = counts.rejected;
@@ -27,12 +30,6 @@ inline lightbin_grid grid_of(const LightRanks& ranks, const LightCounts& counts)
     grid.bins = reinterpret_cast<const lightbin_bin_range*>(ranks.bins.data());
     grid.order_count = ranks.order.size();
     grid.bin_count = ranks.bins.size();
-    return grid;
-}
-
-/// Writes a LightGrid to the caller's struct.
-template <class Id> void write_grid(const LightGrid<Id>& from, lightbin_grid* to) {
-    lightbin_grid grid = grid_of(from.ranks(), from.light_counts());
     grid.tiles_x = from.tiles_x();
     grid.tiles_y = from.tiles_y();
     grid.slices = from.slices();
@@ -133,21 +130,17 @@ inline lightbin_result read_options(const lightbin_binner_options* given, Option
     lightbin_binner_options known = {};
     lightbin_result result = given != nullptr ? read(given, known, "options") : succeeded();
     if (result.error == LIGHTBIN_OK)
-        result = first_error(check_value(known.footprint, LIGHTBIN_SILHOUETTE, "options.footprint"),
-                             check_value(known.depth_test, LIGHTBIN_SPLIT_BOX, "options.depth_test"),
-                             check_value(known.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
+        result = first_error(check_value(known.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
     if (result.error != LIGHTBIN_OK) return result;
     if (known.ids != LIGHTBIN_U32 && known.ids != LIGHTBIN_U16)
         return refused(LIGHTBIN_NOT_A_VALUE, "options.ids",
                        static_cast<std::uint64_t>(std::int64_t{known.ids}));
     options = {.ids = known.ids == LIGHTBIN_U16 ? IdWidth::u16 : IdWidth::u32,
-               .footprint = static_cast<Footprint>(known.footprint),
-               .depth_test = static_cast<DepthTest>(known.depth_test),
+               .depth_test = known.depth_test != 0,
                .slicing = static_cast<Slicing>(known.slicing),
                .coverage = known.coverage != 0};
     result = read_isa(known.isa, options.isa, "options.isa");
     if (result.error != LIGHTBIN_OK) return result;
-    if (!go_together(options)) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "options");
     const char* const define = left_out(options);
     return define != nullptr ? refused(LIGHTBIN_LEFT_OUT, define) : result;
 }
@@ -185,51 +178,6 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
         });
     });
 }
-
-#if !defined(LIGHTBIN_NO_TRANSPARENCY)
-lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbin_view* view,
-                                          const lightbin_lights* lights, const lightbin_inputs* inputs,
-                                          lightbin_grid* opaque, lightbin_grid* transparent) {
-    using namespace lightbin::c;
-    const lightbin_result result =
-        first_error(check_size(opaque, "opaque"), check_size(transparent, "transparent"));
-    if (result.error != LIGHTBIN_OK) return result;
-    return with_call(binner, view, lights, inputs, [&](const Call& call) {
-        if (!reads_bounds(binner->value.options())) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
-        return with_id(binner->value.options(), [&](auto id) {
-            const auto made = binner->value.template bin_transparency<decltype(id)>(call);
-            if (!made) return refused(made.error());
-            write_grid(made->opaque, opaque);
-            write_grid(made->transparent, transparent);
-            return succeeded();
-        });
-    });
-}
-#endif
-
-#if !defined(LIGHTBIN_NO_BITS)
-lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
-                                  const lightbin_lights* lights, const lightbin_inputs* inputs,
-                                  std::uint32_t max_lights, std::uint32_t* words,
-                                  std::uint64_t word_count, lightbin_bits* bits) {
-    using namespace lightbin::c;
-    const lightbin_result result = check_size(bits, "bits");
-    if (result.error != LIGHTBIN_OK) return result;
-    if (words == nullptr && word_count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "words");
-    return with_call(binner, view, lights, inputs, [&](const Call& call) {
-        if (binner->value.options().slicing == lightbin::Slicing::clusters)
-            return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
-        const auto made =
-            binner->value.bin_bits(call, max_lights, {words, static_cast<std::size_t>(word_count)});
-        if (!made) return refused(made.error());
-        const lightbin_grid grid = grid_of(made->ranks, made->counts);
-        write(lightbin_bits{0, grid.lights, grid.rejected, grid.culled, grid.order, grid.bins, grid.order_count,
-                            grid.bin_count},
-              bits);
-        return succeeded();
-    });
-}
-#endif
 
 lightbin_result lightbin_binner_coverage(const lightbin_binner* binner, const lightbin_coverage** lights,
                                          std::size_t* count) {

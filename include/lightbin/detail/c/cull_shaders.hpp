@@ -19,7 +19,6 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
                              check_value(given.pass, LIGHTBIN_CULL_FILL, "options.pass"),
                              check_value(given.kind, LIGHTBIN_CULL_BOX, "options.kind"),
                              check_value(given.ids, LIGHTBIN_U16, "options.ids"),
-                             check_value(given.depth_test, LIGHTBIN_SPLIT_BOX, "options.depth_test"),
                              check_value(given.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
     if (result.error != LIGHTBIN_OK) return result;
     pass = static_cast<CullPass>(given.pass);
@@ -34,7 +33,7 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
     known.count_in_buffer = given.count_in_buffer != 0;
     known.count_at = given.count_at;
     known.ids = given.ids == LIGHTBIN_U32 ? IdWidth::u32 : static_cast<IdWidth>(given.ids);
-    known.depth_test = static_cast<DepthTest>(given.depth_test);
+    known.depth_test = given.depth_test != 0;
     known.slicing = static_cast<Slicing>(given.slicing);
     known.max_only = given.max_only != 0;
     known.orthographic = given.orthographic != 0;

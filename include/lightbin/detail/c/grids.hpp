@@ -60,13 +60,12 @@ inline lightbin_result read_format(const lightbin_format* given, ListFormat& for
     lightbin_format known;
     const lightbin_result result = read(given, known, name);
     if (result.error != LIGHTBIN_OK) return result;
-    if (known.encoding < 0 || known.encoding > LIGHTBIN_BITMASK || known.ids < 0 || known.ids > LIGHTBIN_U16)
+    if (known.encoding < 0 || known.encoding > LIGHTBIN_SENTINEL || known.ids < 0 || known.ids > LIGHTBIN_U16)
         return refused(LIGHTBIN_NOT_A_VALUE, name,
                        static_cast<std::uint64_t>(std::int64_t{
                            known.ids < 0 || known.ids > LIGHTBIN_U16 ? known.ids : known.encoding}));
     format = {static_cast<ListEncoding>(known.encoding),
-              known.ids == LIGHTBIN_U32 ? IdWidth::u32 : static_cast<IdWidth>(known.ids), known.capacity,
-              known.max_lights};
+              known.ids == LIGHTBIN_U32 ? IdWidth::u32 : static_cast<IdWidth>(known.ids), known.capacity};
     return result;
 }
 

@@ -4,10 +4,9 @@
 // and threads that are left out are refused by the define's name.
 //
 //   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights; the functions that make boxes
-//   LIGHTBIN_NO_U16, LIGHTBIN_NO_SILHOUETTES                        ids and footprints
-//   LIGHTBIN_NO_INTERVAL, LIGHTBIN_NO_BOX, LIGHTBIN_NO_SPLIT_BOX    depth tests
+//   LIGHTBIN_NO_U16                                                 16-bit ids
+//   LIGHTBIN_NO_DEPTH_TEST                                          lightbin_binner_options::depth_test
 //   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings
-//   LIGHTBIN_NO_TRANSPARENCY, LIGHTBIN_NO_BITS                      lightbin_bin_transparency(), lightbin_bin_bits()
 //   LIGHTBIN_NO_COVERAGE                                            lightbin_binner_options::coverage
 //   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
 //   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads

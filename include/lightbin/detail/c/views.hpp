@@ -63,16 +63,10 @@ inline lightbin_result read_bounds(const lightbin_z_bounds* given, const View& v
     const lightbin_result result = read(given, known, "inputs.bounds");
     if (result.error != LIGHTBIN_OK) return result;
     const auto side = [&](const float* bound) { return bound_of(bound, known.tiles); };
-    for (const float* const bound :
-         {known.min, known.max, known.gap_min, known.gap_max, known.transparent_max})
+    for (const float* const bound : {known.min, known.max})
         if (bound != nullptr && known.tiles < view.tile_count())
             return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, "inputs.bounds", view.tile_count(), known.tiles);
-    bounds = {side(known.min),
-              side(known.max),
-              side(known.gap_min),
-              side(known.gap_max),
-              side(known.transparent_max),
-              known.background_skipped != 0};
+    bounds = {side(known.min), side(known.max)};
     return result;
 }
 
@@ -239,7 +233,7 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
     if (result.error == LIGHTBIN_OK) result = read_isa(to.isa, isa, "out.isa");
     if (result.error != LIGHTBIN_OK) return result;
     if (from.depth == nullptr && from.count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "buffer.depth");
-    for (const float* const bound : {to.min, to.max, to.gap_min, to.gap_max, to.transparent_max})
+    for (const float* const bound : {to.min, to.max})
         if (bound != nullptr && to.tiles < view->value.tile_count())
             return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, "out", view->value.tile_count(), to.tiles);
     const auto side = [&](float* bound) {
@@ -253,18 +247,14 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
              from.row_pitch,
              static_cast<lightbin::DepthFormat>(from.format),
              from.skip_background != 0},
-            {side(to.min), side(to.max), side(to.gap_min), side(to.gap_max), side(to.transparent_max)}, isa);
+            {side(to.min), side(to.max)}, isa);
         if (!reduced) return refused(reduced.error());
         lightbin_z_bounds known = {};
         const auto first = [](std::span<const float> bound) {
             return bound.empty() ? nullptr : bound.data();
         };
-        known.background_skipped = reduced->background_skipped;
         known.min = first(reduced->min);
         known.max = first(reduced->max);
-        known.gap_min = first(reduced->gap_min);
-        known.gap_max = first(reduced->gap_max);
-        known.transparent_max = first(reduced->transparent_max);
         known.tiles = to.tiles;
         write(known, bounds);
         return succeeded();

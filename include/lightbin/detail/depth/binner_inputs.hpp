@@ -27,14 +27,6 @@ template <bool read> auto bounds_left_out() {
     return std::conditional_t<read, ZBounds, NotRead>();
 }
 
-/// Returns the bounds that lights are tested against for transparent geometry, which lies anywhere in front of the
-/// opaque geometry with the given bounds; or an error if those say nothing of tiles with background.
-inline Result<ZBounds> transparent_bounds(const ZBounds& opaque) {
-    if (!opaque.transparent_max.empty()) return ZBounds{.max = opaque.transparent_max};
-    if (opaque.background_skipped && !opaque.max.empty()) return Error{ErrorCode::no_transparent_max};
-    return ZBounds{.max = opaque.max};
-}
-
 /// The slices of an Inputs: a reference to the caller's Slices, or a copy of a temporary, which would be destroyed at
 /// the end of the expression that makes the Inputs.
 class SlicesInput {

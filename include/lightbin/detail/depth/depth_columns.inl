@@ -11,11 +11,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// Writes the minimum and the maximum of each column of `depth` to lower[column] and upper[column]: -inf and +inf if
 /// one of its samples is NaN, and +inf and -inf if it has no samples that count. Samples equal to `skipped` don't
 /// count; NaN skips none. There are at least as many columns as a vector has lanes.
-///
-/// by_split  writes the two sides of a gap at the depth split[column] instead: to upper[column] the maximum of the
-///           samples up to it, and to lower[column] the minimum of those beyond it. NaN does not count.
-template <bool by_split>
-inline void column_extremes(const DepthRows& depth, float skipped, const float* split, float* lower, float* upper) {
+inline void column_extremes(const DepthRows& depth, float skipped, float* lower, float* upper) {
     const Floats infinite = broadcast(infinity);
     for (std::size_t column = 0; column < depth.columns; column += lanes) {
         // The last vector begins earlier, so that it ends with the last column.
@@ -26,15 +22,9 @@ inline void column_extremes(const DepthRows& depth, float skipped, const float* 
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
             const auto skip = both(less_equal(sample, broadcast(skipped)), less_equal(broadcast(skipped), sample));
-            if constexpr (by_split) {
-                const Floats middle = load_floats(split + column);
-                least = minimum(select(and_not(less(middle, sample), skip), sample, infinite), least);
-                greatest = maximum(select(and_not(less_equal(sample, middle), skip), sample, -infinite), greatest);
-            } else {
-                least = minimum(select(skip, infinite, sample), least);
-                greatest = maximum(select(skip, -infinite, sample), greatest);
-                numbers = both(numbers, less_equal(sample, sample));
-            }
+            least = minimum(select(skip, infinite, sample), least);
+            greatest = maximum(select(skip, -infinite, sample), greatest);
+            numbers = both(numbers, less_equal(sample, sample));
         }
         store_floats(lower + column, select(numbers, least, -infinite));
         store_floats(upper + column, select(numbers, greatest, infinite));

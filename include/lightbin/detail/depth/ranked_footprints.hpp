@@ -11,15 +11,13 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// The footprints of lights sorted by the first z-bin, an interval of view depth, that the light meets, and in the
 /// caller's order within a z-bin. A footprint's rank is its index in this order; lists have ranks in place of ids.
 /// Memory is reused from call to call.
-template <Footprint footprint> class RankedFootprints {
-    static constexpr bool with_spans = footprint == Footprint::silhouette;
-
+class RankedFootprints {
 public:
     /// Finds the z-bins, intervals of view depth, that each light meets, and sorts the footprints by the first of them.
     /// A light's view depths, a sphere's being z - r to z + r, include their ends and are widened by the slices'
     /// margin. A light that ends close to a boundary may also count for the bin on the other side.
     template <detail::LightKind kind>
-    std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+    std::optional<Error> order(Isa isa, const View& view, const Footprints<true>& footprints,
                                const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
@@ -61,7 +59,7 @@ public:
 private:
     /// Writes the sorted footprints array by array, so that few cache lines are read in random order at a time.
     void gather_lights(const detail::FootprintArrays& lights) {
-        arrays_ = buffers_.reserve(run_.end, with_spans);
+        arrays_ = buffers_.reserve(run_.end);
         std::uint32_t* const order = order_.reserve(run_.end);
         gather(lights.ids, order);
         for (std::uint32_t rank = 0; rank < run_.end; ++rank)
@@ -70,8 +68,6 @@ private:
         gather(lights.y0, arrays_.y0);
         gather(lights.x1, arrays_.x1);
         gather(lights.y1, arrays_.y1);
-        if constexpr (with_spans) gather(lights.span_begin, arrays_.span_begin);
-        arrays_.spans = lights.spans;
         arrays_.light_ids = order;
         arrays_.view_lights = lights.view_lights;
     }

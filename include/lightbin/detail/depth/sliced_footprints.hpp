@@ -8,14 +8,12 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused between calls.
-template <Footprint footprint> class SlicedFootprints {
-    static constexpr bool with_spans = footprint == Footprint::silhouette;
-
+class SlicedFootprints {
 public:
     /// Puts each footprint in the slices that its light's view depths meet, ends included: those of a sphere, z +- r,
     /// widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
     template <detail::LightKind kind>
-    std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+    std::optional<Error> order(Isa isa, const View& view, const Footprints<true>& footprints,
                                const Slices& slices) {
         constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
@@ -25,8 +23,7 @@ public:
         if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
         const std::uint64_t size = find_slices<kind>(isa, view, footprints);
         if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
-        arrays_ = buffers_.reserve(size, with_spans);
-        arrays_.spans = lights.spans;
+        arrays_ = buffers_.reserve(size);
         arrays_.view_lights = lights.view_lights;
         const SliceRange* met = met_.data();
         for (const detail::FootprintRun& run : footprints.runs())
@@ -68,7 +65,7 @@ private:
     /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. One unused element
     /// follows the footprints of each slice, as put() may write there. Returns the number of elements of each array.
     template <detail::LightKind kind>
-    std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
+    std::uint64_t find_slices(Isa isa, const View& view, const Footprints<true>& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
         SliceRange* met = met_.reserve(footprints.visible());
@@ -104,7 +101,6 @@ private:
         arrays_.y0[to] = lights.y0[i];
         arrays_.x1[to] = lights.x1[i];
         arrays_.y1[to] = lights.y1[i];
-        if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
     }
 
     const detail::SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()

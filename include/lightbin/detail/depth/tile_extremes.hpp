@@ -36,24 +36,16 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
 ///
 /// tile_columns  samples across a tile
 /// skipped       samples of this value are left out; NaN: none are
-/// by_split      instead of the extremes of all samples, finds the greatest sample that is not above splits[tile], as
-///               `upper`, and the least one that is above it, as `lower`
-template <bool by_split, class Finish>
-void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped,
-                     const float* splits, Finish finish) {
+template <class Finish>
+void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped, Finish finish) {
     constexpr std::size_t buffer_size = 512;
     const std::size_t block = tile_columns < buffer_size ? buffer_size / tile_columns * tile_columns : buffer_size;
-    float lower[buffer_size], upper[buffer_size], split[by_split ? buffer_size : 1];
+    float lower[buffer_size], upper[buffer_size];
     Extremes tile;
     for (std::size_t first = 0; first < row.columns; first += block) {
         const std::size_t end = min_of(first + block, row.columns);
         const DepthRows part = {row.samples + first, row.pitch, row.rows, end - first};
-        for (std::size_t column = first; by_split && column < end;) {
-            const std::size_t stop = min_of((column / tile_columns + 1) * tile_columns, end);
-            fill_items(split + (column - first), stop - column, splits[column / tile_columns]);
-            column = stop;
-        }
-        depth_kernel<by_split>(isa, part.columns)(part, skipped, split, lower, upper);
+        depth_kernel(isa, part.columns)(part, skipped, lower, upper);
         for (std::size_t column = first; column < end;) {
             const std::size_t index = column / tile_columns;
             const std::size_t tile_end = min_of((index + 1) * tile_columns, row.columns);

@@ -7,18 +7,10 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed.
-template <Footprint footprint, DepthTest depth_test>
-inline constexpr bool has_tests = footprint != Footprint::rectangle || depth_test != DepthTest::none;
-
 /// The kind of lights that the binning kernel for lights of `kind` is compiled for. Kernels without a depth test read
 /// footprints only, so all kinds share those for spheres.
-template <DepthTest depth_test, LightKind kind>
-inline constexpr LightKind kind_read = depth_test != DepthTest::none ? kind : LightKind::sphere;
-
-/// Whether a depth test compares lights with the boxes around cells, rather than with their depths alone.
-template <DepthTest depth_test>
-inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
+template <bool depth_test, LightKind kind>
+inline constexpr LightKind kind_read = depth_test ? kind : LightKind::sphere;
 
 /// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_*.
 struct BlockList {
@@ -33,14 +25,14 @@ struct Scratch {
     Buffer<std::uint32_t> corners;  ///< a difference array over tiles: its prefix sums are their numbers of lights
 
     // Memory for BandLists, the lists of the lights in bands; a band is a row of blocks of 8x8 tiles.
-    /// The indices 0, 1, 2 ... of footprints, which lists have in place of ids until silhouettes and depths are tested.
+    /// The indices 0, 1, 2 ... of footprints, which lists have in place of ids until depths are tested.
     Buffer<std::uint32_t> light_indices;
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;     ///< ids of lights; during silhouette and depth tests, indices of footprints
+    Buffer<std::uint32_t> list_ids;     ///< ids of lights; during depth tests, indices of footprints
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
@@ -86,12 +78,6 @@ inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset
         copied = min_of(filled, count - filled);
         copy_items(tiles, copied, tiles + filled);
     }
-}
-
-/// Returns a bit for each of the 8 tiles begin..begin + 7 that lies in first..last. The two ranges must overlap.
-inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
-    const unsigned low = first > begin ? first - begin : 0, high = last - begin < 7 ? last - begin : 7;
-    return ((2u << high) - 1) & (~0u << low);
 }
 
 /// Returns the word whose lowest byte is the first of 8 bytes in memory, whatever the byte order of the machine.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The view-space box around a tile's cell, which DepthTest::box tests spheres against (Thomas, "Advancements
+// The view-space box around a tile's cell, which the depth test tests spheres against (Thomas, "Advancements
 // in Tiled-Based Compute Rendering", GDC 2015; Stewart, "Compute-Based Tiled Culling", GPU Pro 6).
 //
 // A cell lies between two depths and, along each of x and y, between two planes, which pass through the eye
@@ -55,16 +55,7 @@ inline float reach2_of(float radius) {
     return rounded(rounded(radius * radius) * (1 + 0x1p-20f)) + 0x1p-125f;
 }
 
-/// How many arrays of 64 floats, one number for each of a block's tiles, describe the cells that a depth test compares
-/// lights with: see arrange_cells().
-template <DepthTest depth_test>
-inline constexpr unsigned cell_arrays = depth_test == DepthTest::split_box ? 12
-                                        : depth_test == DepthTest::box     ? 6
-                                                                           : 2;
-/// With split_box a tile has two cells: the arrays of the second begin this many floats after those of the first.
-inline constexpr unsigned next_cell = 64 * cell_arrays<DepthTest::box>;
-
-/// A sphere as the depth tests read it, in view space. The camera's signs are applied: tile indices grow with x and y,
+/// A sphere as the depth test reads it, in view space. The camera's signs are applied: tile indices grow with x and y,
 /// and z is the view depth.
 struct TestedLight {
     TestedLight() = default;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Step 2 of binning: finds in which of a block's 8x8 tiles each of its lights is listed. Included once per tier (ISA).
 //
-// A silhouette and a depth test work on a word for each light, with a bit for each tile: the tiles of the light's
-// rectangle, and-ed with the tiles in its silhouette's row spans and with the tiles whose cells it meets.
+// The depth test works on a word for each light, with a bit for each tile: the tiles of the light's rectangle, and-ed
+// with the tiles whose cells it meets.
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
@@ -24,7 +24,7 @@ inline Floats distance(Floats coordinate, Floats low, Floats high) {
     return maximum(maximum(low - coordinate, coordinate - high), broadcast(0.0f));
 }
 
-/// Returns the squared distances of a point from a vector of boxes, whose arrays store_box() lays out.
+/// Returns the squared distances of a point from a vector of boxes, whose arrays store_boxes() lays out.
 inline Floats distance2(const float* boxes, float x, float y, float z) {
     const Floats along_z = distance(broadcast(z), load_floats(boxes), load_floats(boxes + 64)),
                  along_x = distance(broadcast(x), load_floats(boxes + 128), load_floats(boxes + 192)),
@@ -42,7 +42,7 @@ LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const float*, const float*
 /// Adds to the mask `missed` those of a vector of cells that lie outside of one of the half spaces `around` a light, by
 /// the formula in cell_planes.hpp, and returns it. Always inlined: GCC 12 loses half of a mask that a call returns.
 ///
-/// cells             the depths z0 and z1 of the cells, in the arrays that store_box() fills
+/// cells             the depths z0 and z1 of the cells, in the arrays that store_boxes() fills
 /// x_edges, y_edges  the edges of the cells' tiles in TileEdges::x and TileEdges::y
 template <bool orthographic, std::size_t count, class Mask>
 LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_edges, const float* y_edges,
@@ -60,9 +60,10 @@ LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_
 }
 
 /// Returns a mask of the cells in a vector that a spot or a Box misses. These are the cells whose boxes, stored by
-/// store_box(), do not meet its ball, the sphere that it is a part of, and the cells outside of one of the half spaces
-/// around it: four around a spot, six around a Box. The ball of a Box that its sphere does not cut has an infinite
-/// radius and is not tested. (Unreal tests one such half space, chosen for each cell.) Arguments: see or_outside().
+/// store_boxes(), do not meet its ball, the sphere that it is a part of, and the cells outside of one of the half
+/// spaces around it: four around a spot, six around a Box. The ball of a Box that its sphere does not cut has an
+/// infinite radius and is not tested. (Unreal tests one such half space, chosen for each cell.) Arguments: see
+/// or_outside().
 template <bool orthographic, class Shape>
 LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, const float* y_edges,
                                   const TestedShape<Shape>& light) {
@@ -74,10 +75,10 @@ LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, cons
     return or_outside<orthographic>(missed, cells, x_edges, y_edges, shape.around);
 }
 
-/// The cells of a block's tiles, with which a depth test compares the block's lights.
-template <DepthTest depth_test> struct BlockCells {
-    float arrays[64 * cell_arrays<depth_test>];  ///< the cells' depths or boxes, as arrange_cells() stores them
-    TileEdges edges;       ///< the edges of the cells' tiles, set only if lights are tested against boxes around cells
+/// The cells of a block's tiles, with which the depth test compares the block's lights.
+struct BlockCells {
+    float boxes[6 * 64];   ///< the boxes around the cells, as store_boxes() lays them out
+    TileEdges edges;       ///< the edges of the cells' tiles
     std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
     DepthInterval depths;  ///< an interval that holds the view depths of the cells of all tiles in `drawn`
 };
@@ -85,31 +86,24 @@ template <DepthTest depth_test> struct BlockCells {
 /// Returns a word whose bit i says whether a light meets the cell of tile `tile` + i, for each lane i of a vector.
 ///
 /// orthographic  whether the projection is orthographic, which only the half spaces around spots and Boxes depend on
-template <DepthTest depth_test, bool orthographic, class Light>
-std::uint64_t tiles_met(const BlockCells<depth_test>& cells, unsigned tile, const Light& light) {
-    const Floats nearest = broadcast(light.nearest), farthest = broadcast(light.farthest);
-    std::uint64_t met = 0;
-    for (unsigned box = 0; box < 64 * cell_arrays<depth_test>; box += next_cell) {
-        const float* const cell = cells.arrays + box + tile;
-        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-        if constexpr (depth_test != DepthTest::interval)
-            missed = either(
-                missed, boxes_missed<orthographic>(cell, cells.edges.x + tile % 8, cells.edges.y + tile, light));
-        met |= ~movemask(missed) & every_lane;
-    }
-    return met;
+template <bool orthographic, class Light>
+std::uint64_t tiles_met(const BlockCells& cells, unsigned tile, const Light& light) {
+    const float* const boxes = cells.boxes + tile;
+    const auto apart = either(less(broadcast(light.farthest), load_floats(boxes)),
+                              less(load_floats(boxes + 64), broadcast(light.nearest)));
+    const auto missed = boxes_missed<orthographic>(boxes, cells.edges.x + tile % 8, cells.edges.y + tile, light);
+    return ~movemask(either(apart, missed)) & every_lane;
 }
 
 /// Returns the interval of the view depths of all cells that share a vector with a tile whose bit in `drawn` is set.
-template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
+inline DepthInterval depth_range(const float* boxes, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
     for (unsigned tile = 0; tile < 64; tile += lanes)
-        if ((drawn >> tile & every_lane) != 0)
-            for (unsigned cell = 0; cell < 64 * cell_arrays<depth_test>; cell += next_cell) {
-                nearest = minimum(load_floats(cells + cell + tile), nearest);
-                farthest = maximum(load_floats(cells + cell + 64 + tile), farthest);
-            }
+        if ((drawn >> tile & every_lane) != 0) {
+            nearest = minimum(load_floats(boxes + tile), nearest);
+            farthest = maximum(load_floats(boxes + 64 + tile), farthest);
+        }
     store_floats(min, nearest);
     store_floats(max, farthest);
     DepthInterval range = {min[0], max[0]};
@@ -123,8 +117,8 @@ template <DepthTest depth_test> DepthInterval depth_range(const float* cells, st
 /// vectors of tiles: the cells stay in registers, and no short loop over a light's vectors has a mispredicted end.
 ///
 /// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
-template <DepthTest depth_test, bool orthographic, class Light>
-void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const std::uint8_t* columns,
+template <bool orthographic, class Light>
+void meet_tiles(const BlockCells& cells, const Light* lights, const std::uint8_t* columns,
                 const std::uint8_t* rows, std::uint64_t chosen, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
     split_bits(columns, in_column);
@@ -138,27 +132,9 @@ void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const 
             in_columns |= in_column[tile % 8 + lane];
         for (std::uint64_t rest = in_rows & in_columns & chosen; rest != 0; rest &= rest - 1) {
             const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
-            met[light] |= tiles_met<depth_test, orthographic>(cells, tile, lights[light]) << tile;
+            met[light] |= tiles_met<orthographic>(cells, tile, lights[light]) << tile;
         }
     }
-}
-
-/// Returns the bits of `tiles` whose tiles lie within the row spans of a light's silhouette.
-///
-/// i       the light's index in the footprint arrays
-/// x, top  the block begins at tile column 8 * x and tile row `top`
-inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i, unsigned x, unsigned top,
-                                      std::uint64_t tiles) {
-    if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
-    std::uint64_t spanned = 0;
-    for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
-                  last = 7 - static_cast<unsigned>(std::countl_zero(tiles)) / 8;
-         row <= last; ++row) {
-        const RowSpan span = lights.spans[lights.span_begin[i] + (top + row - lights.y0[i])];
-        const bool here = span.first <= span.last && span.first < 8 * x + 8 && span.last >= 8 * x;
-        spanned |= std::uint64_t{here ? covered(span.first, span.last, 8 * x) & 0xff : 0} << 8 * row;
-    }
-    return tiles & spanned;
 }
 
 /// The boxes around the cells of a depth slice in one block of 8x8 tiles.
@@ -246,8 +222,8 @@ template <class Light> struct TestedLights {
 /// slab           with by_slab, the boxes around the block's cells in a depth slice, which spheres are tested against
 /// indices        the lights' indices in the footprint arrays
 /// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
-template <DepthTest depth_test, bool by_slab, LightKind kind, class Slab, class Id>
-void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const Slab& slab,
+template <bool by_slab, LightKind kind, class Slab, class Id>
+void meet_64_lights(const BinJob<Id>& job, const BlockCells& cells, const Slab& slab,
                     const std::uint32_t* indices, const std::uint8_t* columns, const std::uint8_t* rows,
                     std::uint32_t count, std::uint64_t* met) {
     const ViewLights lights = job.lights.view_lights;
@@ -281,10 +257,10 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     }
     const auto meet = [&]<class Light>(const TestedLights<Light>& tested) {
         if (tested.in_range == 0) return;
-        if constexpr (!std::is_same_v<Light, TestedLight> && with_boxes<depth_test>)
+        if constexpr (!std::is_same_v<Light, TestedLight>)
             if (job.camera->orthographic)
-                return meet_tiles<depth_test, true>(cells, tested.lights, columns, rows, tested.in_range, met);
-        meet_tiles<depth_test, false>(cells, tested.lights, columns, rows, tested.in_range, met);
+                return meet_tiles<true>(cells, tested.lights, columns, rows, tested.in_range, met);
+        meet_tiles<false>(cells, tested.lights, columns, rows, tested.in_range, met);
     };
     if constexpr (!by_slab && kind != LightKind::box) meet(spheres);
     if constexpr (kind == LightKind::spot || kind == LightKind::mixed) meet(spots);
@@ -329,15 +305,13 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
 
 /// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
 /// `top`. Removes lights that are in none of its tiles from the list, and replaces the others' indices by ids.
-template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
+template <bool by_slab, LightKind kind, class Id>
 void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                  BlockList& list) {
-    [[maybe_unused]] BlockCells<depth_test> cells;
-    if constexpr (depth_test != DepthTest::none) {
-        cells.drawn = arrange_cells<depth_test>(job, x, top, cells.arrays, cells.edges);
-        cells.depths = depth_range<depth_test>(cells.arrays, cells.drawn);
-    }
-    [[maybe_unused]] std::conditional_t<by_slab, SlabCells, NoSlab> slab_cells(slab, x, top);
+    BlockCells cells;
+    cells.drawn = arrange_cells(job, x, top, cells.boxes, cells.edges);
+    cells.depths = depth_range(cells.boxes, cells.drawn);
+    std::conditional_t<by_slab, SlabCells, NoSlab> slab_cells(slab, x, top);
     const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                        *const rows = scratch.list_rows.data() + list.begin;
     std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
@@ -345,17 +319,13 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
     std::uint32_t kept = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
-        [[maybe_unused]] std::uint64_t met[64];
-        if constexpr (depth_test != DepthTest::none)
-            meet_64_lights<depth_test, by_slab, kind>(job, cells, slab_cells, indices + begin, columns + begin,
-                                                      rows + begin, count, met);
+        std::uint64_t met[64];
+        meet_64_lights<by_slab, kind>(job, cells, slab_cells, indices + begin, columns + begin, rows + begin, count,
+                                      met);
         for (std::uint32_t i = begin; i < begin + count; ++i) {
             const std::uint32_t light = indices[i];
-            std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101};
-            if constexpr (depth_test != DepthTest::none)
-                tiles &= met[i - begin] & cells.drawn;
-            if constexpr (footprint == Footprint::silhouette)
-                tiles = silhouette_tiles(job.lights, light, x, top, tiles);
+            const std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101} &
+                                        met[i - begin] & cells.drawn;
             indices[kept] = job.lights.ids[light];
             masks[kept] = tiles;
             kept += tiles != 0;
@@ -370,11 +340,11 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
 /// slab   with by_slab, the boxes around the depth slice's cells, which lights are tested against
 /// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
 /// end    the end of the tile rows that the caller will ask for
-template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
+template <bool depth_test, bool by_slab, LightKind kind, class Id>
 const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
                              unsigned top, unsigned end) {
-    constexpr bool slab_alone = by_slab && kind == LightKind::sphere && footprint == Footprint::rectangle;
-    constexpr bool masked = has_tests<footprint, depth_test> && !slab_alone;
+    constexpr bool slab_alone = by_slab && kind == LightKind::sphere;
+    constexpr bool masked = depth_test && !slab_alone;
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
     if (top >= bands.end) list_bands<masked>(job, scratch, top, end, bands);
     BlockList* const lists = scratch.lists.reserve(width);
@@ -384,7 +354,7 @@ const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const Slab
         BlockList& list = lists[x];
         list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
         if constexpr (masked)
-            if (list.count > 0) mask_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, x, top, list);
+            if (list.count > 0) mask_lights<by_slab, kind>(job, scratch, slab, x, top, list);
         if (list.count == 0) continue;
         const std::uint32_t padded = list.padded_count();
         scratch.row_columns.reserve(std::uint64_t{8} * (used + padded) + 64, std::size_t{8} * used);

@@ -179,16 +179,16 @@ LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob<>& job, Scratch& s
 }
 
 /// bin_blocks_by() with the list_lights() of the given options.
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
+template <bool depth_test, class Id, bool by_slab, LightKind kind>
 std::uint64_t bin_blocks(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
     SlabBoxes slab;
     if constexpr (by_slab)
         if (job.visible != 0) slab = arrange_slab(job, scratch);
-    return bin_blocks_by(job, scratch, share, slab, list_lights<footprint, depth_test, by_slab, kind, std::uint32_t>);
+    return bin_blocks_by(job, scratch, share, slab, list_lights<depth_test, by_slab, kind, std::uint32_t>);
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
+template <bool depth_test, bool by_slab, LightKind kind, class Id>
 std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
     SlabBoxes slab;
@@ -196,55 +196,12 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     BandLists bands;
     std::uint64_t entries = 0;
     for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, bands, top, end);
+        const BlockList* list = list_lights<depth_test, by_slab, kind>(job, scratch, slab, bands, top, end);
         for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
             for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
                 entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));
     }
     return entries;
-}
-
-/// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word
-/// w stands for the light with the id 32 w + b.
-///
-/// list_band  list_lights() for the options
-template <class ListLights>
-LIGHTBIN_SHARED_PART void write_bits_by(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end,
-                                       std::uint32_t* bits, std::size_t stride, ListLights list_band) {
-    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
-    const std::size_t row_stride = tiles_x * stride;
-    fill_items(bits + begin * row_stride, (end - begin) * row_stride, 0);
-    std::size_t positions[64];  // where each tile's words begin, counted from the words of the block's first tile
-    for (unsigned tile = 0; tile < 64; ++tile)
-        positions[tile] = tile / 8 * row_stride + tile % 8 * stride;
-    BandLists bands;
-    for (unsigned top = begin; top < end; top += 8) {
-        const BlockList* list = list_band(job, scratch, {}, bands, top, end);
-        for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list) {
-            const std::uint8_t* const row_columns = scratch.row_columns_of(*list);
-            std::uint32_t* const first = bits + top * row_stride + x * stride;
-            for (std::uint32_t i = 0; i < list->count; i += 8) {
-                // For each of 8 lights a word with a bit for each tile: one loop visits a light's tiles in all rows.
-                std::uint64_t masks[8];
-                for (unsigned row = 0; row < 8; ++row)
-                    masks[row] = load_8_bytes(row_columns + row * list->padded_count() + i);
-                transpose_bytes(masks);
-                for (std::uint32_t k = 0; k < 8 && i + k < list->count; ++k) {
-                    const std::uint32_t id = scratch.list_ids.data()[list->begin + i + k];
-                    for (std::uint64_t rest = masks[k]; rest != 0; rest &= rest - 1)
-                        first[positions[std::countr_zero(rest)] + id / 32] |= std::uint32_t{1} << id % 32;
-                }
-            }
-        }
-    }
-}
-
-/// write_bits_by() with the list_lights() of the given options.
-template <Footprint footprint, DepthTest depth_test, LightKind kind>
-void write_bits(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
-                std::size_t stride) {
-    write_bits_by(job, scratch, begin, end, bits, stride,
-                  list_lights<footprint, depth_test, false, kind, std::uint32_t>);
 }
 
 }}}}  // namespace lightbin::detail

@@ -11,16 +11,16 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Whether spheres are tested by SlabCells, for a slice's boxes of equal depths. This is faster than the test for
 /// boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
-template <DepthTest depth_test, LightKind kind, bool sliced>
-inline constexpr bool by_slab = sliced && depth_test == DepthTest::box && kind != LightKind::box;
+template <bool depth_test, LightKind kind, bool sliced>
+inline constexpr bool by_slab = sliced && depth_test && kind != LightKind::box;
 
 /// The features that a TileLists needs, as constants. The implementation of lightbin.h passes a struct in place of this
-/// whose `tested`, `with_boxes` and `sliced` are set at run time.
-template <bool any_test, bool any_box, bool any_slice> struct FixedLists {
-    static constexpr bool may_test = any_test, may_have_boxes = any_box, may_slice = any_slice;
-    /// Whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed; whether the test
-    /// is against boxes around cells; and whether there is a grid for each depth slice.
-    static constexpr bool tested = any_test, with_boxes = any_box, sliced = any_slice;
+/// whose `tested` and `sliced` are set at run time.
+template <bool any_test, bool any_slice> struct FixedLists {
+    static constexpr bool may_test = any_test, may_slice = any_slice;
+    /// Whether a depth test decides in which tiles of its rectangle a light is listed, and whether there is a grid for
+    /// each depth slice.
+    static constexpr bool tested = any_test, sliced = any_slice;
 };
 
 /// A light grid, or if How::sliced one per depth slice, stored one after another. Its memory is kept from call to call.
@@ -35,7 +35,7 @@ public:
     /// have too few elements, or 32 bits can't count the entries.
     ///
     /// footprints     SlicedFootprints if how.sliced, else Footprints or RankedFootprints; with a depth test, ones that
-    ///                keep the lights in view space (with_spheres)
+    ///                keep the lights in view space
     /// parallel       Serial or Parallel
     /// choose_kernel  choose_kernel(isa, view, job) returns the kernel, a BinKernel, for one slice
     /// count_entries  count_entries(job, scratch) returns how many entries the lists of one slice have; called if
@@ -112,30 +112,6 @@ public:
         return {};
     }
 
-    /// Writes for each tile a bitmask of `stride` words: bit b of word w stands for the light with the id 32 w + b.
-    /// Drops the last built grid: tiles() is empty. Returns build()'s errors but too many entries, as none are counted.
-    template <class AnyFootprints>
-    LIGHTBIN_ONCE std::optional<Error> write_bits(Isa, const View& view, const AnyFootprints& footprints,
-                                                  const ZBounds& bounds, Buffer<Scratch>& scratch,
-                                                  const Parallel& parallel, const How& how, BitsKernel kernel,
-                                                  std::uint32_t* bits, std::size_t stride) {
-        tile_count_ = entries_ = 0;
-        Job common = {};
-        if (const auto error = prepare(view, bounds, how, common)) return error;
-        const Job job = job_of(common, footprints, 0);
-        if (const auto error = check_list_size(view, job)) return error;
-        const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
-        const std::size_t count = max_of<std::size_t>(min_of(parallel.workers(), bands), 1);
-        scratch.reserve(count, count);
-        parallel.run(count, [&](std::size_t i) {
-            const auto row = [&](std::size_t part) {
-                return static_cast<unsigned>(min_of(rows, part * bands / count * 8));
-            };
-            kernel(job, scratch.data()[i], row(i), row(i + 1), bits, stride);
-        });
-        return {};
-    }
-
     template <class Range = ListRange> std::span<const Range> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
@@ -147,14 +123,14 @@ private:
                                  Job& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);
-        const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
-        for (std::size_t side = 0; side < 4; ++side) {
+        const std::span<const float> sides[] = {bounds.min, bounds.max};
+        for (std::size_t side = 0; side < 2; ++side) {
             if (sides[side].empty()) continue;
             if (sides[side].size() < tiles) return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
             common.bounds[side] = sides[side].data();
         }
-        if constexpr (How::may_have_boxes)
-            if (how.with_boxes) find_edges(common);
+        if constexpr (How::may_test)
+            if (how.tested) find_edges(common);
         return {};
     }
 
@@ -197,11 +173,9 @@ private:
     std::size_t tile_count_ = 0, entries_ = 0;
 };
 
-/// The TileLists for a footprint and a depth test that are known when it is compiled, with their kernels.
-template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
-    static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
-                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
-    using How = FixedLists<has_tests<footprint, depth_test>, with_boxes<depth_test>, sliced>;
+/// The TileLists for a depth test that is known when it is compiled, with its kernels.
+template <class Id, bool depth_test, bool sliced> class GridLists {
+    using How = FixedLists<depth_test, sliced>;
 
 public:
     template <LightKind kind, class AnyFootprints, class Threads>
@@ -211,19 +185,11 @@ public:
         return lists_.build(
             isa, view, footprints, bounds, scratch, parallel, How(),
             [](Isa set, const View& of, const BinJob<>& job) {
-                return bin_kernel<footprint, depth_test, Id, slab, kind>(set, of, job.area);
+                return bin_kernel<depth_test, Id, slab, kind>(set, of, job.area);
             },
             [](const auto& job, Scratch& memory) {  // `auto`, so that it is not compiled where nothing is tested
-                return least::count_entries<footprint, depth_test, slab, kind>(job, memory);
+                return least::count_entries<depth_test, slab, kind>(job, memory);
             });
-    }
-
-    template <LightKind kind, class AnyFootprints>
-    std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
-                                    Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits,
-                                    std::size_t stride) {
-        return lists_.write_bits(isa, view, footprints, bounds, scratch, parallel, How(),
-                                 bits_kernel<footprint, depth_test, kind>(isa), bits, stride);
     }
 
     template <class Range = ListRange> std::span<const Range> tiles() const { return lists_.tiles(); }

@@ -25,7 +25,7 @@ struct BandLists {
     std::size_t panels = 0, count = 0, capacity = 0;
     std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light's columns x0..x1-1 in its panel of 248 tile columns
     std::uint8_t* rows = nullptr;               ///< per light, a bit for each of the band's 8 tile rows it covers
-    std::uint32_t* ids = nullptr;               ///< lights' ids or, for silhouette and depth tests, footprints' indices
+    std::uint32_t* ids = nullptr;               ///< lights' ids or, for depth tests, footprints' indices
     std::uint32_t* sizes = nullptr;
 };
 
@@ -75,7 +75,7 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
 
 /// Lists the lights of as many bands of 8 tile rows, from row `begin` on, as max_band_entries allows in one pass.
 ///
-/// tested  whether to list indices in the footprint arrays, for silhouette and depth tests, rather than lights' ids
+/// tested  whether to list indices in the footprint arrays, for depth tests, rather than lights' ids
 template <bool tested, class Id>
 void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scattering: binning by counting, prefix sums and filling (Tiled Shading, section 6.1). A light is listed in all tiles
-// of its rectangle: there is no silhouette or depth test. It is the faster method for small lights and nearly empty
+// of its rectangle: there is no depth test. It is the faster method for small lights and nearly empty
 // grids, and on machines without vectors. The code is the same for all instruction sets.
 #pragma once
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of boxes in view space, in float or in double, and what projection, silhouettes and depth tests have in
-// common: the normals of a box's faces, and how far a box reaches in a direction. Included once per tier (instruction
-// set).
+// Vectors of boxes in view space, and what projection and depth tests have in common: the normals of a box's faces, and
+// how far a box reaches in a direction. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -10,7 +9,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A vector of boxes in view space, after the camera's signs. See Box. Reals are Floats or Doubles.
+/// A vector of boxes in view space, after the camera's signs. See Box. Reals are Floats, or double in
+/// boxes_in_double.hpp.
 template <class Reals> struct BoxLanes {
     Reals centre[3], half_axes[3][3], taper;
     /// A bound on how far a corner, computed from these numbers with rounding, is from the exact one, in the sum of

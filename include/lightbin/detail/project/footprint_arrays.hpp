@@ -30,17 +30,12 @@ struct LightSource {
     ViewBox* out_boxes = nullptr;
 };
 
-/// The tiles first..last of one tile row that a light's silhouette touches; none if first > last.
-struct RowSpan {
-    std::uint16_t first, last;
-};
-
 /// A run of footprints: the elements begin..end-1 of FootprintArrays.
 struct FootprintRun {
     std::uint32_t begin, end;
 };
 
-/// All lights in view space. They are complete only if silhouettes, depth tests or coverage read them. Ids number the
+/// All lights in view space. They are complete only if depth tests, slices or coverage read them. Ids number the
 /// arrays that lights() joined: first all spheres, then all spots, then all boxes.
 struct ViewLights {
     const Sphere* spheres = nullptr;  ///< to be read with load_sphere()
@@ -69,32 +64,26 @@ struct ViewLights {
 /// can be read and written, as kernels load and store whole vectors.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
-    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< span_begin of a footprint without row spans
 
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
-
-    /// With Footprint::silhouette, for each footprint: the index in `spans` of the span of tile row y0, which the spans
-    /// of the rows up to y1 follow; or whole_rectangle, if the footprint has no spans and covers its whole rectangle.
-    std::uint32_t* span_begin = nullptr;
-    const RowSpan* spans = nullptr;
 
     /// For each footprint, the position of its light in the caller's arrays, by which view_lights is indexed. This is
     /// `ids`, except with z-bins, where `ids` holds ranks, which are positions in order of depth.
     const std::uint32_t* light_ids = nullptr;
     ViewLights view_lights = {};
 
-    /// Returns the arrays of the footprints (lights' tile rectangles) from `begin` on, without silhouettes' row spans.
+    /// Returns the arrays of the footprints (lights' tile rectangles) from `begin` on.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, light_ids + begin,
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, light_ids + begin,
                 view_lights};
     }
 };
 
 class FootprintBuffers {
 public:
-    /// Returns arrays for `count` footprints and FootprintArrays::padding elements more; span_begin only if with_spans.
-    FootprintArrays reserve(std::uint64_t count, bool with_spans) {
+    /// Returns arrays for `count` footprints and FootprintArrays::padding elements more.
+    FootprintArrays reserve(std::uint64_t count) {
         const std::uint64_t capacity = count + FootprintArrays::padding;
         std::uint32_t* const ids = ids_.reserve(capacity);
         return {.ids = ids,
@@ -102,12 +91,11 @@ public:
                 .y0 = y0_.reserve(capacity),
                 .x1 = x1_.reserve(capacity),
                 .y1 = y1_.reserve(capacity),
-                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
                 .light_ids = ids};
     }
 
 private:
-    Buffer<std::uint32_t> ids_, span_begin_;
+    Buffer<std::uint32_t> ids_;
     Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
 };
 
@@ -122,7 +110,6 @@ struct ProjectCounts {
     std::uint32_t visible = 0;   ///< the number of lights in view
     std::uint32_t rejected = 0;  ///< the number of lights that are bad input, see Sphere
     std::uint64_t area = 0;      ///< the number of tiles in all rectangles: an upper bound on the length of all lists
-    std::uint64_t rows = 0;      ///< the number of tile rows in all rectangles; counted for silhouettes only
 };
 
 /// The tile rectangles of a chunk of lights: `size` lights are projected first, then the ones out of view are dropped.
@@ -152,7 +139,7 @@ struct FootprintSlice {
 /// the same type for all widths of ids.
 template <class Id = std::uint32_t> struct BinJob : FootprintSlice {
     const Camera* camera;
-    const float* bounds[4];  ///< the tiles' depths ZBounds::min, max, gap_min, gap_max; null for absent ones
+    const float* bounds[2];  ///< the tiles' depths ZBounds::min and max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()
     ListRange* tiles;        ///< where to write the offset and count of each tile's list, for the whole grid
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The projection stage: from lights to footprints, the tile rectangles of the lights in view, rounded outward, and with
-// silhouettes the spans of tiles in each tile row.
+// The projection stage: from lights to footprints, the tile rectangles of the lights in view, rounded outward.
 #pragma once
 
 #include <lightbin/detail/tiers/kernels.hpp>
@@ -40,18 +39,15 @@ template <class Array> void copy_lights(const void* lights, std::size_t first, s
 
 /// The footprints of the lights in view, in ascending order of id.
 ///
-/// footprint     silhouette: with row spans
-/// with_spheres  keep the lights in view space for a depth test; silhouettes keep them anyway
-template <Footprint footprint, bool with_spheres> class Footprints {
-    static constexpr bool with_spans = footprint == Footprint::silhouette, keeps_lights = with_spheres || with_spans;
-
+/// keeps_lights  keep the lights in view space, for depth tests, slices or coverage
+template <bool keeps_lights> class Footprints {
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
     /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
     /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
     /// of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     ///
-    /// for_boxes  store with each spot or Box what depth tests against boxes need; only if with_spheres
+    /// for_boxes  store with each spot or Box what depth tests against boxes need; only if keeps_lights
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
                                bool for_boxes = false) {
@@ -61,7 +57,7 @@ public:
         detail::for_each_array(source, [&](const auto& lights) { run_count_ += parts_of(lights); });
         runs_.reserve(run_count_);
         part_counts_.reserve(run_count_);
-        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding, with_spans);
+        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding);
         std::size_t first_id = 0, first_part = 0;
         detail::for_each_array(source, [&](const auto& lights) {
             project_array(isa, view, lights, parallel, for_boxes, first_id, first_part, parts_of(lights));
@@ -74,20 +70,6 @@ public:
             counts_.visible += counts.visible;
             counts_.rejected += counts.rejected;
             counts_.area += counts.area;
-            counts_.rows += counts.rows;
-        }
-        if constexpr (with_spans) {
-            reserve_spans();
-            first_part = 0;
-            detail::for_each_array(source, [&]<class Array>(const Array& lights) {
-                const auto kernel = detail::row_span_kernel<Array::kind>(isa);
-                parallel.run(parts_of(lights), [&](std::size_t i) {
-                    const std::size_t part = first_part + i;
-                    kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans_.data(),
-                           part_counts_.data()[part].rows);
-                });
-                first_part += parts_of(lights);
-            });
         }
     }
 
@@ -155,32 +137,12 @@ private:
                    static_cast<std::uint32_t>(end - first), arrays_.from(to), sum);
             const detail::FootprintRun run = {static_cast<std::uint32_t>(to),
                                               static_cast<std::uint32_t>(to) + sum.visible};
-            if constexpr (with_spans)
-                for (std::uint32_t k = run.begin; k < run.end; ++k)
-                    sum.rows += arrays_.y1[k] - arrays_.y0[k] + 1u;
             part_counts_.data()[part] = sum;
             runs_.data()[part] = run;
         });
     }
 
-    /// Reserves memory for the row spans of all footprints, in one array, those of each FootprintRun together. Stores the
-    /// index of each run's first span in ProjectCounts::rows.
-    void reserve_spans() {
-        constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
-        // Lights whose row spans would have an index above 32 bits get no spans, and cover their whole rectangles.
-        const std::uint64_t capacity = detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
-        arrays_.spans = spans_.reserve(capacity + padding);
-        std::uint64_t begin = 0;
-        for (std::size_t part = 0; part < run_count_; ++part) {
-            detail::ProjectCounts& counts = part_counts_.data()[part];
-            const std::uint64_t rows = counts.rows;
-            counts.rows = begin;
-            begin += rows + padding;
-        }
-    }
-
     detail::FootprintBuffers buffers_;
-    detail::Buffer<detail::RowSpan> spans_;
     detail::Buffer<Sphere> spheres_;
     detail::Buffer<detail::ViewSpot> spots_;
     detail::Buffer<detail::ViewBox> boxes_;

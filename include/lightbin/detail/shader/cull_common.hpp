@@ -14,7 +14,6 @@ inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a ligh
 
 /// Returns the first error among the options, or nothing.
 inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters;
     return refuse_common(
         options,
         {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
@@ -22,9 +21,7 @@ inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
         {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
          {options.kind == CullKind::box, {ErrorCode::no_cull_of_boxes}},
          {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
-         {options.depth_test == DepthTest::split_box, {ErrorCode::no_split_box_shader}},
-         {options.slicing == Slicing::z_bins || (clusters && options.depth_test == DepthTest::interval),
-          {ErrorCode::no_such_slicing_shader}}});
+         {options.slicing == Slicing::z_bins, {ErrorCode::no_such_slicing_shader}}});
 }
 
 /// How many invocations a group of a pass has.
@@ -35,8 +32,7 @@ constexpr unsigned cull_threads(CullPass pass) {
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
 inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
     const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
-    if (options.depth_test == DepthTest::none) return words;
-    if (options.depth_test != DepthTest::box) return words + 2;
+    if (!options.depth_test) return words;
     return words + (options.kind == CullKind::spot ? 20u : 4u);
 }
 

@@ -57,7 +57,7 @@ bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
 )");
 }
 
-/// Adds the functions with which DepthTest::box finds a cell's view-space box, as engine/cell_boxes.hpp does, and the
+/// Adds the functions with which the depth test finds a cell's view-space box, as engine/cell_boxes.hpp does, and the
 /// function `meets_box`. In perspective the sides of a cell are slopes, which a depth multiplies.
 ///
 /// Rounding, u = 2^-24. A box must hold the Binner's: an edge that the Binner computes is within u of the product
@@ -96,11 +96,8 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
 
 /// Adds `tiles_met`, which returns what the rectangle of the light whose record begins at `at` covers of the 8x8 tiles
 /// from `corner` on: a bit for each column and, from bit 8 on, for each row; 0 if the light does not meet the slice.
-/// For depth tests adds `meets`, which tells whether the light meets the cell between the depths z in a tile that it
-/// covers.
-inline void add_meets(ShaderWriter& writer, const CullShaderOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
-    const std::string depths = options.slicing == Slicing::none ? "2u" : "3u";
+inline void add_tiles_met(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
     writer.add(std::string(R"(
 // The bits from the tile `first` to the tile `last`, of 8 tiles from `begin` on.
 uint $bits_of(uint first, uint last, uint begin) {
@@ -119,11 +116,6 @@ uint $tiles_met(uint at, uvec2 corner, uint slice) {
 )") + (clusters ? R"(    uint slices = $scratch[at + 2u];
     if (slice < (slices & 0xffffu) || slice > slices >> 16u) { bits = 0u; }
 )" : "") + "    return bits;\n}\n");
-    if (options.depth_test == DepthTest::none) return;
-    writer.add(std::string("\nbool $meets(uint at, ") + (box ? "vec2 columns, vec2 rows, " : "") + "vec2 z) {\n" +
-               (box ? "    return $meets_box(at + " + depths + ", columns, rows, z);\n}\n"
-                    : "    return uintBitsToFloat($scratch[at + " + depths +
-                          "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n}\n"));
 }
 
 inline void declare_stage(ShaderWriter& writer) {
@@ -203,13 +195,13 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
 /// Returns the shader's lines that find the cell's depths and box. `drawn` is false if the cell is outside of the grid
 /// or its Z bounds are empty.
 inline std::string cull_cell(const CullShaderOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
-    if (options.depth_test == DepthTest::none) return "    bool drawn = inside;\n";
-    std::string text = std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
-                       (clusters ? "slice" : "cell") + "); }\n    bool drawn = inside && z.x <= z.y;\n";
-    if (box)  // lights that are tested end before the depth 2^42
-        text += std::string("    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, ") +
-                (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
+    const bool clusters = options.slicing == Slicing::clusters;
+    if (!options.depth_test) return "    bool drawn = inside;\n";
+    return std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
+           (clusters ? "slice" : "cell") + "); }\n    bool drawn = inside && z.x <= z.y;\n" +
+           // lights that are tested end before the depth 2^42
+           "    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, " +
+           (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
     vec2 columns = vec2(0.0, 0.0);
     vec2 rows = vec2(0.0, 0.0);
     if (drawn) {
@@ -218,7 +210,6 @@ inline std::string cull_cell(const CullShaderOptions& options) {
         rows = $across($z_bounds[sides + $grid.x + tile.y], z);
     }
 )";
-    return text;
 }
 
 /// Adds `store_id`, which writes an id to the lists. Ids of 16 bits share words, also with the lists before and
@@ -241,8 +232,8 @@ void $store_id(uint at, uint id) {
 
 /// Adds the pass count or fill.
 inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bool fill) {
-    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
-               depths = options.depth_test != DepthTest::none, narrow = options.ids == IdWidth::u16;
+    const bool clusters = options.slicing == Slicing::clusters, depths = options.depth_test,
+               narrow = options.ids == IdWidth::u16;
     if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
     declare_scratch(writer, options);
     if (fill) {
@@ -252,9 +243,11 @@ inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bo
     }
     writer.add("\n");
     declare_stage(writer);
-    if (depths) add_cell_depths(writer, options);
-    if (box) add_cell_box(writer, options);
-    add_meets(writer, options);
+    if (depths) {
+        add_cell_depths(writer, options);
+        add_cell_box(writer, options);
+    }
+    add_tiles_met(writer, options);
     add_stage(writer, options);
     if (fill) {
         add_saturated_sum(writer);
@@ -300,8 +293,9 @@ void $run(uvec2 group, uint thread) {
 )" + (fill || depths ? R"(            while (met != 0u) {
                 uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);
                 met &= met - 1u;
-)" + (depths ? "                if (!$meets(" + cull_record_of(options, "id") + (box ? ", columns, rows" : "") +
-                   ", z)) { continue; }\n" : std::string()) +
+)" + (depths ? "                if (!$meets_box(" + cull_record_of(options, "id") +
+                   (options.slicing == Slicing::none ? " + 2u" : " + 3u") + ", columns, rows, z)) { continue; }\n"
+                       : std::string()) +
                (fill ? "                $store_id(at, id);\n                at = $sum(at, 1u);\n"
                      : "                count += 1u;\n") + "            }\n"
                              : std::string("            count += uint(bitCount(met));\n")) +

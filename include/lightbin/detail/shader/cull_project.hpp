@@ -202,25 +202,20 @@ uvec2 $slices_of(vec2 z) {
 )");
 }
 
-/// Returns the shader's lines that store what the depth test reads, from word `word` of the record on: the light's view
-/// depths, moved outward by more than the GPU's and the Binner's may differ, or for boxes its sphere, behind which
-/// `project` stores a spot's half spaces. A radius of -1 stands for a light that boxes don't exclude: one that counts
-/// as everywhere, or a spot that is not sound.
+/// Returns the shader's lines that store what the depth test reads, from word `word` of the record on: the light's
+/// sphere, behind which `project` stores a spot's half spaces. A radius of -1 stands for a light that boxes don't
+/// exclude: one that counts as everywhere, or a spot that is not sound.
 inline std::string cull_depth_record(const CullShaderOptions& options, const std::string& word) {
     const auto put = [&](const char* index, const char* value) {
         return "    $scratch[record + " + word + " + " + index + "u] = floatBitsToUint(" + value + ");\n";
     };
-    if (options.depth_test == DepthTest::interval)
-        return put("0", "z.x - abs(z.x) * 4.7683716e-7 - 1e-37") + put("1", "z.y + abs(z.y) * 4.7683716e-7 + 1e-37");
-    if (options.depth_test == DepthTest::box)
-        return "    if (!bounded) { s.w = -1.0; }\n" + put("0", "s.x") + put("1", "s.y") + put("2", "s.z") +
-               put("3", "s.w");
-    return "";
+    if (!options.depth_test) return "";
+    return "    if (!bounded) { s.w = -1.0; }\n" + put("0", "s.x") + put("1", "s.y") + put("2", "s.z") + put("3", "s.w");
 }
 
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) {
-    const bool sliced = options.slicing != Slicing::none, box = options.depth_test == DepthTest::box,
+    const bool sliced = options.slicing != Slicing::none, box = options.depth_test,
                spots = options.kind == CullKind::spot;
     const std::string depths = sliced ? "3u" : "2u";  // where in a record what the depth test reads begins
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);

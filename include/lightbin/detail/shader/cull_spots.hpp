@@ -175,7 +175,7 @@ vec2 $narrowed($spot s, vec2 bounds, float c, float axis, float other) {
 /// these the Binner has, and they are the ball's.
 inline void add_spots(ShaderWriter& writer, const CullShaderOptions& options) {
     add_spot_at(writer, options);
-    if (options.depth_test == DepthTest::box) add_half_spaces(writer);
+    if (options.depth_test) add_half_spaces(writer);
     if (options.orthographic) {
         writer.add(R"(
 vec2 $bounds_across($spot s, float c, float axis, float other) {

@@ -86,10 +86,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
                                              byte_address};
     const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
-    const bool table = format.encoding == ListEncoding::offset_count,
-               bits = format.encoding == ListEncoding::bitmask;
+    const bool table = format.encoding == ListEncoding::offset_count;
     // In buffer textures and textures each id has a texel unless ids are packed.
-    const bool one_id = !options.packed_ids && !bits && (resource == texel_buffer || textures);
+    const bool one_id = !options.packed_ids && (resource == texel_buffer || textures);
     const TexelFormat texel = one_id && format.ids == IdWidth::u8    ? TexelFormat::r8ui
                               : one_id && format.ids == IdWidth::u16 ? TexelFormat::r16ui
                                                                      : TexelFormat::r32ui;
@@ -164,22 +163,18 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
 )");
 
     // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
-    if (!bits)
-        writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
-                   (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
-                    : format.ids == IdWidth::u16          ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
-                                                          : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
-                   ";\n}\n");
+    writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
+               (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
+                : format.ids == IdWidth::u16         ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
+                                                     : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
+               ";\n}\n");
 
     // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
     // nothing: the constants may be unset, or describe a smaller image or other tiles.
     writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
-    if (bits) writer.add("    uint bits;\n");
     if (binned) writer.add("    uint last;\n");
     writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
-               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
-               (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
-    if (bits) writer.add("    c.bits = 0u;\n");
+               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n    c.id = 0u;\n");
     if (binned) writer.add("    c.last = 0u;\n");
     writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
                is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
@@ -192,23 +187,19 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
                    " * (($grid.w - 1u) / " + size + " + 1u);\n");
     if (binned) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
-    const std::string each = std::to_string(elements_per_tile(format)) + "u";
     if (table)
         writer.add("        uvec2 list = " +
                    (textures && !options.tiles_in_uniform_block
                         ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
                         : "$tiles[place]") +
                    ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
-    else
-        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
-                   (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
+    else {
+        const std::string each = std::to_string(format.capacity) + "u";
+        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " + each + ";\n");
+    }
     // With z-bins ids are ranks, the places of the lights in order of depth. The cursor skips the ids below the bin's
-    // least rank: in a bitmask by the index of the word, in a list of known length by binary search, in one that a
-    // sentinel ends by linear search.
-    if (binned && bits)
-        writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = $lists[c.at] & "
-                   "(0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
-    else if (binned && table)
+    // least rank: in a list of known length by binary search, in one that a sentinel ends by linear search.
+    if (binned && table)
         writer.add(R"(        uint end = c.end;
         while (c.at < end) {
             uint middle = c.at + ((end - c.at) >> 1u);
@@ -222,25 +213,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
     // result that was not set where a function returns early.
     writer.add("    }\n    return c;\n}\n\nbool $own_next(inout $own_cursor c) {\n");
-    if (bits)
-        // The upper 27 bits of c.id are the index of the current word, c.bits its bits that are still to come. Without
-        // findLSB the exponent of the lowest bit, converted to float, is its index.
-        writer.add(R"(    c.id &= ~31u;
-    while (c.bits == 0u && c.at < c.end) {
-        c.bits = $lists[c.at];
-        c.at += 1u;
-        c.id += 32u;
-    }
-    bool more = c.bits != 0u;
-    if (more) {
-        c.id += )" + std::string(dialect.storage_buffers
-                                    ? "uint(findLSB(c.bits))"
-                                    : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n        c.bits &= c.bits - 1u;\n");
-    else
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
-                   "        c.at += 1u;\n");
-    if (!bits && !table)
+    writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
+               "        c.at += 1u;\n");
+    if (!table)
         writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
     if (binned) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");

@@ -18,32 +18,13 @@ LIGHTBIN_AVX2_BEGIN
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx2 {
 
 using FloatRegister = __m256;
-using DoubleRegister = __m256d;
-inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
+inline constexpr std::uint32_t lanes = 8;
 
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LT_OQ)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LE_OQ)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
-
-#define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_ELEMENT float
-#define LIGHTBIN_REGISTER __m256
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/tiers/x86_vector.inl>
-
-#define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_ELEMENT double
-#define LIGHTBIN_REGISTER __m256d
-#define LIGHTBIN_OP(name) _mm256_##name##_pd
-#include <lightbin/detail/tiers/x86_vector.inl>
-
-#undef LIGHTBIN_LESS
-#undef LIGHTBIN_LESS_EQUAL
-#undef LIGHTBIN_SELECT
-
-inline Doubles widened(Floats a, unsigned half) {
-    return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
-}
 
 /// Transposes 4x4 floats in each half of four vectors.
 inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
@@ -92,16 +73,6 @@ inline Floats ascending_bits(Floats values) {
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm256_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint32_t* tiles, Doubles values) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvttpd_epi32(values));
-}
-
-inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const __m128i pairs =
-        _mm_or_si128(_mm256_cvttpd_epi32(first), _mm_slli_epi32(_mm256_cvttpd_epi32(last), 16));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
-}
-
 inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
     __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
     for (int bit = 7; bit >= 0; --bit, all = _mm_add_epi8(all, all))

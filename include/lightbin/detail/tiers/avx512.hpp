@@ -27,43 +27,17 @@ LIGHTBIN_AVX512_BEGIN
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
 
 using FloatRegister = __m512;
-using DoubleRegister = __m512d;
-inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
+inline constexpr std::uint32_t lanes = 16;
 
-template <int how> inline __mmask16 compared(__m512 a, __m512 b) {
-    return _mm512_cmp_ps_mask(a, b, how);
-}
-template <int how> inline __mmask8 compared(__m512d a, __m512d b) {
-    return _mm512_cmp_pd_mask(a, b, how);
-}
-#define LIGHTBIN_LESS(a, b) compared<_CMP_LT_OQ>(a, b)
-#define LIGHTBIN_LESS_EQUAL(a, b) compared<_CMP_LE_OQ>(a, b)
+#define LIGHTBIN_LESS(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ)
+#define LIGHTBIN_LESS_EQUAL(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
-
-#define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_ELEMENT float
-#define LIGHTBIN_REGISTER __m512
 #define LIGHTBIN_MASK __mmask16
 #define LIGHTBIN_OP(name) _mm512_##name##_ps
 #include <lightbin/detail/tiers/x86_vector.inl>
 
-#define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_ELEMENT double
-#define LIGHTBIN_REGISTER __m512d
-#define LIGHTBIN_MASK __mmask8
-#define LIGHTBIN_OP(name) _mm512_##name##_pd
-#include <lightbin/detail/tiers/x86_vector.inl>
-
-#undef LIGHTBIN_LESS
-#undef LIGHTBIN_LESS_EQUAL
-#undef LIGHTBIN_SELECT
-
 inline unsigned movemask(unsigned mask) {
     return mask;
-}
-
-inline Doubles widened(Floats a, unsigned half) {
-    return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
 }
 
 /// Transposes 4x4 floats in each quarter of four vectors.
@@ -137,16 +111,6 @@ inline Floats ascending_bits(Floats values) {
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     _mm512_storeu_si512(tiles, _mm512_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint32_t* tiles, Doubles values) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm512_cvttpd_epi32(values));
-}
-
-inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const __m256i pairs =
-        _mm256_or_si256(_mm512_cvttpd_epi32(first), _mm256_slli_epi32(_mm512_cvttpd_epi32(last), 16));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(spans), pairs);
-}
-
 inline void split_32_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     for (unsigned bit = 0; bit < 8; ++bit)

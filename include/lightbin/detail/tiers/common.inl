@@ -21,15 +21,6 @@ inline Floats load_floats(const float* from) {
 inline void store_floats(float* to, FloatRegister values) {
     std::memcpy(to, &values, sizeof values);
 }
-inline Doubles load_doubles(const double* from) {
-    DoubleRegister values;
-    std::memcpy(&values, from, sizeof values);
-    return values;
-}
-inline void store_doubles(double* to, DoubleRegister values) {
-    std::memcpy(to, &values, sizeof values);
-}
-
 // Logic of masks, for tiers whose masks have the operators & | ^.
 template <class Mask> inline Mask both(Mask a, Mask b) {
     return static_cast<Mask>(a & b);

@@ -41,38 +41,28 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
 template <LightKind kind> ProjectKernel project_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template project_kernel<kind>(); });
 }
-template <LightKind kind> RowSpanKernel row_span_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<kind>(); });
-}
 
 template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<kind>(); });
 }
 
 /// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
-template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
-    if (isa == Isa::scalar) return scalar::Tier::depth_kernel<by_split>();
+inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
+    if (isa == Isa::scalar) return scalar::Tier::depth_kernel();
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
-        return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });
-    return depth_kernel<by_split>(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
-}
-
-template <Footprint footprint, DepthTest depth_test, LightKind kind> BitsKernel bits_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) {
-        return tier.template bits_kernel<footprint, depth_test, kind_read<depth_test, kind>>();
-    });
+        return with_tier(isa, [](auto tier) { return tier.depth_kernel(); });
+    return depth_kernel(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
 }
 
 /// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all.
 ///
 /// by_slab  whether lights are tested against the boxes around a depth slice's cells, see SlabCells
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
+template <bool depth_test, class Id, bool by_slab, LightKind kind>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
-    if constexpr (!has_tests<footprint, depth_test>)
+    if constexpr (!depth_test)
         if (scatter_is_faster(isa, view.tile_count(), area)) return scatter_lights<Id>;
     return with_tier(isa, [](auto tier) {
-        return tier.template bin_kernel<footprint, depth_test, Id, by_slab,
-               kind_read<depth_test, kind>>();
+        return tier.template bin_kernel<depth_test, Id, by_slab, kind_read<depth_test, kind>>();
     });
 }
 

@@ -6,9 +6,9 @@
 // file, and a function in kernels.hpp that returns it.
 //
 // A tier defines LIGHTBIN_TIER, the name of its namespace, and in that
-//   lanes, double_lanes            the number of floats, and of doubles, in a vector
-//   Floats, Doubles                vectors with + - * / and the sign
-//   FloatRegister, DoubleRegister  the compiler's own types inside of Floats and Doubles
+//   lanes                          the number of floats in a vector
+//   Floats                         a vector with + - * / and the sign
+//   FloatRegister                  the compiler's own type inside of Floats
 //   broadcast, sqrt, abs           a number in all lanes; the root, and the absolute value, of each lane
 //   mul                            a product that is rounded before anything is added to it, see rounded()
 //   less, less_equal               comparisons; the result is a mask
@@ -16,9 +16,8 @@
 //   both, either, and_not          logic of masks, unless masks have & | ^
 //   select(mask, a, b)             a where the mask is set, else b
 //   minimum, maximum               of two vectors; where a lane of the first is NaN, the second's
-//   widened(floats, half)          half 0 or 1 of Floats as Doubles
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
-//   store_tiles, store_spans       coordinates of tiles, rounded down to whole numbers; pairs of them as RowSpans
+//   store_tiles                    coordinates of tiles, rounded down to whole numbers
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
 //   split_bits(bytes, words)       transposes 64 bytes to 8 words: bit i of word j is bit j of byte i
 //   split_16_bytes(bytes, words)   as split_bits(), but of 16 bytes
@@ -46,8 +45,6 @@
 
 #include <lightbin/detail/project/spheres.inl>
 
-#include <lightbin/detail/project/sphere_rows.inl>
-
 #include <lightbin/detail/engine/lists.inl>
 
 #include <lightbin/detail/engine/cells.inl>
@@ -61,7 +58,6 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// The kernels that each kind of lights has of its own: here those of spheres. shape_kernels.inl has those of spots and
 /// boxes, as specialisations, which a program finds if it includes spot.hpp or box.hpp.
 template <LightKind> struct KernelsOf {
-    using Rows = SphereRows;
     template <LightKind> static ProjectKernel project_kernel() { return project_lights<LightKind::sphere>; }
 };
 
@@ -72,21 +68,14 @@ struct Tier {
     template <LightKind kind> static ProjectKernel project_kernel() {
         return KernelsOf<kind>::template project_kernel<kind>();
     }
-    template <LightKind kind> static RowSpanKernel row_span_kernel() {
-        return row_spans<typename KernelsOf<kind>::Rows>;
-    }
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
-    template <bool by_split> static DepthKernel depth_kernel() { return column_extremes<by_split>; }
+    static DepthKernel depth_kernel() { return column_extremes; }
 
-    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
-    static BinKernel<Id> bin_kernel() {
-        if constexpr (lanes == 1 && !has_tests<footprint, depth_test>)
+    template <bool depth_test, class Id, bool by_slab, LightKind kind> static BinKernel<Id> bin_kernel() {
+        if constexpr (lanes == 1 && !depth_test)
             return scatter_lights<Id>;  // as scatter_is_faster() says of the scalar tier
         else
-            return bin_blocks<footprint, depth_test, Id, by_slab, kind>;
-    }
-    template <Footprint footprint, DepthTest depth_test, LightKind kind> static BitsKernel bits_kernel() {
-        return write_bits<footprint, depth_test, kind>;
+            return bin_blocks<depth_test, Id, by_slab, kind>;
     }
 };
 

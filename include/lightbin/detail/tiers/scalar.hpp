@@ -9,10 +9,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace scalar {
 
 using Floats = float;
-using Doubles = double;
 using FloatRegister = float;
-using DoubleRegister = double;
-inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
+inline constexpr std::uint32_t lanes = 1;
 
 #include <lightbin/detail/tiers/native_vector.inl>
 
@@ -31,9 +29,6 @@ inline float select_unpredicted(bool mask, float a, float b) {
     const std::uint32_t if_set = 0u - std::uint32_t{mask};
     return bit_cast<float>((bit_cast<std::uint32_t>(a) & if_set) | (bit_cast<std::uint32_t>(b) & ~if_set));
 }
-inline double widened(float a, unsigned) {
-    return static_cast<double>(a);
-}
 inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, float& radius) {
     const Sphere sphere = load_sphere(spheres);
     x = sphere.x;
@@ -51,9 +46,6 @@ inline float ascending_bits(float value) {
 }
 template <class Real> void store_tiles(std::uint32_t* tiles, Real value) {
     *tiles = static_cast<std::uint32_t>(value);
-}
-inline void store_spans(RowSpan* spans, double first, double last) {
-    *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
 
 template <unsigned count> void split_bytes(const std::uint8_t* bytes, std::uint64_t* words) {

@@ -7,22 +7,16 @@
 
 #include <lightbin/detail/project/spots.inl>
 
-#include <lightbin/detail/project/spot_rows.inl>
-
 #include <lightbin/detail/project/box_vectors.inl>
 
 #include <lightbin/detail/project/boxes.inl>
 
-#include <lightbin/detail/project/box_rows.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
 template <> struct KernelsOf<LightKind::spot> {
-    using Rows = SpotRows;
     template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
 };
 template <> struct KernelsOf<LightKind::box> {
-    using Rows = BoxRows;
     template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
 };
 

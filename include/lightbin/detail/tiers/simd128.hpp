@@ -28,7 +28,7 @@ LIGHTBIN_SIMD128_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace simd128 {
 
-inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
+inline constexpr std::uint32_t lanes = 4;
 
 #if defined(LIGHTBIN_X86)
 #include <lightbin/detail/tiers/simd128/sse41.inl>

@@ -12,16 +12,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 // What kernels.inl hands out of each tier.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
-using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
-                               RowSpan* spans, std::uint64_t place);
 using DepthBucketsKernel = void (*)(const DepthBuckets& to, float z_sign, const FootprintArrays& lights,
                                    const std::uint32_t* ids, std::uint32_t count, LightDepths& out);
-using DepthKernel = void (*)(const DepthRows& depth, float skipped, const float* split, float* lower,
-                             float* upper);
+using DepthKernel = void (*)(const DepthRows& depth, float skipped, float* lower, float* upper);
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share);
-using BitsKernel = void (*)(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end,
-                            std::uint32_t* bits, std::size_t stride);
 
 /// Stores bounds along the image axes of the part of a sphere beyond the near plane. The sphere is the centre (x, y, z),
 /// signed so that tile indices grow with x and y, and z is the view depth, and the radius: floats converted to double.

@@ -2,35 +2,21 @@
 // The operations of the tier of 128-bit vectors in NEON. Included by simd128.hpp, in its namespace.
 
 using Floats = float32x4_t;
-using Doubles = float64x2_t;
 using FloatRegister = Floats;
-using DoubleRegister = Doubles;
 
 #include <lightbin/detail/tiers/native_vector.inl>
 
 inline Floats broadcast(float each) {
     return vdupq_n_f32(each);
 }
-inline Doubles broadcast(double each) {
-    return vdupq_n_f64(each);
-}
 inline Floats sqrt(Floats a) {
     return vsqrtq_f32(a);
-}
-inline Doubles sqrt(Doubles a) {
-    return vsqrtq_f64(a);
 }
 inline unsigned movemask(decltype(Floats{} < Floats{}) mask) {
     static constexpr std::uint32_t each[] = {1, 2, 4, 8};
     return vaddvq_u32(vandq_u32(reinterpret_cast<uint32x4_t>(mask), vld1q_u32(each)));
 }
-inline unsigned movemask(decltype(Doubles{} < Doubles{}) mask) {
-    return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2));
-}
 
-inline Doubles widened(Floats a, unsigned half) {
-    return half == 0 ? vcvt_f64_f32(vget_low_f32(a)) : vcvt_high_f64_f32(a);
-}
 
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
     const float32x4x4_t columns = vld4q_f32(&spheres->x);
@@ -51,14 +37,6 @@ inline Floats ascending_bits(Floats values) {
 }
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     vst1q_u32(tiles, vcvtq_u32_f32(values));
-}
-inline void store_tiles(std::uint32_t* tiles, Doubles values) {
-    vst1_u32(tiles, vmovn_u64(vcvtq_u64_f64(values)));
-}
-inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const uint64x2_t pairs = vorrq_u64(vcvtq_u64_f64(first), vshlq_n_u64(vcvtq_u64_f64(last), 16));
-    const uint32x2_t narrow = vmovn_u64(pairs);
-    std::memcpy(spans, &narrow, sizeof narrow);
 }
 
 using ByteRegister = uint8x16_t;

@@ -2,31 +2,13 @@
 // The operations of the tier of 128-bit vectors in SSE4.1. Included by simd128.hpp, in its namespace.
 
 using FloatRegister = __m128;
-using DoubleRegister = __m128d;
 
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
-
-#define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_ELEMENT float
-#define LIGHTBIN_REGISTER __m128
 #define LIGHTBIN_OP(name) _mm_##name##_ps
 #include <lightbin/detail/tiers/x86_vector.inl>
 
-#define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_ELEMENT double
-#define LIGHTBIN_REGISTER __m128d
-#define LIGHTBIN_OP(name) _mm_##name##_pd
-#include <lightbin/detail/tiers/x86_vector.inl>
-
-#undef LIGHTBIN_LESS
-#undef LIGHTBIN_LESS_EQUAL
-#undef LIGHTBIN_SELECT
-
-inline Doubles widened(Floats a, unsigned half) {
-    return _mm_cvtps_pd(half == 0 ? a.v : _mm_movehl_ps(a, a));
-}
 inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
     const char* const bytes = static_cast<const char*>(from);
     x = _mm_loadu_ps(reinterpret_cast<const float*>(bytes));
@@ -56,14 +38,6 @@ inline Floats ascending_bits(Floats values) {
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint32_t* tiles, Doubles values) {
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_cvttpd_epi32(values));
-}
-inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
-}
-
 using ByteRegister = __m128i;
 
 inline __m128i load_register(const void* from) {

@@ -2,23 +2,15 @@
 // The operations of the tier of 128-bit vectors in WebAssembly's simd128. Included by simd128.hpp, in its namespace.
 
 typedef float Floats __attribute__((vector_size(16)));
-typedef double Doubles __attribute__((vector_size(16)));
 using FloatRegister = Floats;
-using DoubleRegister = Doubles;
 
 #include <lightbin/detail/tiers/native_vector.inl>
 
 inline Floats broadcast(float each) {
     return reinterpret_cast<Floats>(wasm_f32x4_splat(each));
 }
-inline Doubles broadcast(double each) {
-    return reinterpret_cast<Doubles>(wasm_f64x2_splat(each));
-}
 inline Floats sqrt(Floats a) {
     return reinterpret_cast<Floats>(wasm_f32x4_sqrt(reinterpret_cast<v128_t>(a)));
-}
-inline Doubles sqrt(Doubles a) {
-    return reinterpret_cast<Doubles>(wasm_f64x2_sqrt(reinterpret_cast<v128_t>(a)));
 }
 // WebAssembly's pmin and pmax are select(less(a, b), a, b) and the like in one instruction, also for NaN.
 inline Floats minimum(Floats a, Floats b) {
@@ -27,24 +19,10 @@ inline Floats minimum(Floats a, Floats b) {
 inline Floats maximum(Floats a, Floats b) {
     return reinterpret_cast<Floats>(wasm_f32x4_pmax(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
 }
-inline Doubles minimum(Doubles a, Doubles b) {
-    return reinterpret_cast<Doubles>(wasm_f64x2_pmin(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
-}
-inline Doubles maximum(Doubles a, Doubles b) {
-    return reinterpret_cast<Doubles>(wasm_f64x2_pmax(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
-}
 inline unsigned movemask(decltype(Floats{} < Floats{}) mask) {
     return wasm_i32x4_bitmask(reinterpret_cast<v128_t>(mask));
 }
-inline unsigned movemask(decltype(Doubles{} < Doubles{}) mask) {
-    return wasm_i64x2_bitmask(reinterpret_cast<v128_t>(mask));
-}
 
-inline Doubles widened(Floats a, unsigned half) {
-    const v128_t all = reinterpret_cast<v128_t>(a);
-    return reinterpret_cast<Doubles>(
-        wasm_f64x2_promote_low_f32x4(half == 0 ? all : wasm_i64x2_shuffle(all, all, 1, 1)));
-}
 /// Transposes 4x4 floats.
 inline void transpose(v128_t& a, v128_t& b, v128_t& c, v128_t& d) {
     const v128_t low = wasm_i32x4_shuffle(a, b, 0, 4, 1, 5), high = wasm_i32x4_shuffle(a, b, 2, 6, 3, 7),
@@ -78,14 +56,6 @@ inline Floats ascending_bits(Floats values) {
 }
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     wasm_v128_store(tiles, wasm_i32x4_trunc_sat_f32x4(reinterpret_cast<v128_t>(values)));
-}
-inline void store_tiles(std::uint32_t* tiles, Doubles values) {
-    wasm_v128_store64_lane(tiles, wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(values)), 0);
-}
-inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const v128_t from = wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(first)),
-                 to = wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(last));
-    wasm_v128_store64_lane(spans, wasm_v128_or(from, wasm_i32x4_shl(to, 16)), 0);
 }
 
 using ByteRegister = v128_t;
