@@ -247,8 +247,9 @@ Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings&
         prices.read_back_ns = reads_back ? times.read_back_ns : HUGE_VAL;
         prices.gpu_reduction_ns = times.gpu_reduction_ns;
         words = text("OpenGL       %.60s, GLSL %d\n", times.renderer.c_str(), times.glsl);
-        words += text("costs        %.4g ns a light evaluation%s, %.3g ns a byte of the lists;\n",
-                      prices.evaluation_ns, told ? "" : " (assumed: there are too few to time)",
+        words += text("costs        %.4g ns a light evaluation%s %.3g ns a byte of the lists;\n",
+                      prices.evaluation_ns,
+                      told ? "," : " (assumed: there are too few to time),\n            ",
                       prices.upload_byte_ns);
         words += text("             the pre-pass %.3f ms; its Z bounds %.3f ms by a shader",
                       1e-6 * times.depth_pass_ns, 1e-6 * times.gpu_reduction_ns);

@@ -29,7 +29,7 @@ lightbin::Slicing slicing_of(const FrameSettings& settings) {
 DepthMethod method_of(const FrameSettings& settings) {
     return settings.depth == DepthUse::z_bins     ? DepthMethod::z_bins
            : settings.depth == DepthUse::clusters ? DepthMethod::clusters
-           : settings.depth == DepthUse::pre_pass ? DepthMethod::z_bounds
+           : settings.has_z_bounds()              ? DepthMethod::z_bounds
                                                   : DepthMethod::none;
 }
 

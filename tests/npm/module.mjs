@@ -412,7 +412,7 @@ test('each option and value that a sentence offers is in lightbin.d.ts, and each
             ++values;
         }
     }
-    assert.equal(values, 22);
+    assert.equal(values, 19);
     view.dispose();
     binner.dispose();
 });

@@ -134,7 +134,7 @@ void check(const BoxTally& tally) {
 
 #define PROVE(kind)                                                                                                    \
     TEST_CASE("boxes: " #kind) {                                                                                       \
-        check(prove_in_view_space<Boxes>(#kind, kinds::kind(), 100));                                                  \
+        check(prove_in_view_space<Boxes>(#kind, kinds::kind(), 200));                                                  \
     }
 ORACLE_CAMERA_KINDS(PROVE)
 

@@ -62,7 +62,7 @@ struct Spots {
 
 #define PROVE(kind)                                                                                                    \
     TEST_CASE("spots: " #kind) {                                                                                       \
-        prove_in_view_space<Spots>(#kind, kinds::kind(), 84);                                                          \
+        prove_in_view_space<Spots>(#kind, kinds::kind(), 160);                                                          \
     }
 ORACLE_CAMERA_KINDS(PROVE)
 
