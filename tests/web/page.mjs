@@ -125,8 +125,6 @@ test('WebGPU has no z-bins, and the reason is given', async t => {
     await wait_for_text(page, 'refused', /^Z-bins can't be had in WebGPU/);
     assert.ok(await page.locator('#method option[value=z_bins]').isDisabled());
     assert.equal(await page.locator('#method').inputValue(), 'clusters');
-    await page.locator('#advise').click();
-    assert.ok(await page.locator('#advice button', {hasText: 'z-bins'}).first().isDisabled());
     await page.locator('#renderer').selectOption('webgl');
     await wait_for_text(page, 'refused', /^$/);
     assert.ok(!await page.locator('#method option[value=z_bins]').isDisabled());
