@@ -25,7 +25,7 @@ try() {
     families)
         g++ $flags -c tests/oracle/engine.cpp -o "$place/engine.o" 2>"$place/log" &&
             g++ "$place/engine.o" $work/judge.o $work/campaign.o -lgmp -o "$place/proof"
-        arguments=2000
+        arguments=8000
         ;;
     cull)
         g++ $flags -Iexamples/tiled_forward tests/shader/cull_gl.cpp examples/tiled_forward/gl_context.cpp \
