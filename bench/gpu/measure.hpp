@@ -76,17 +76,22 @@ private:
     lightbin::Binner<options> binner_;
 };
 
-using CoveringBuild = CpuBuild<lightbin::Options{.coverage = true}>;
+/// What each light of a frame covers.
+inline std::vector<lightbin::LightCoverage> coverage_of(const GpuFrame& frame, const lightbin::View& view) {
+    return frame.to_view ? *lightbin::coverage(view, lightbin::world_space(frame.lights, *frame.to_view))
+                         : *lightbin::coverage(view, frame.lights);
+}
 
 /// Lists the plain tiles of `turns` frames by BruteForce, and compares each list.
 inline void measure_brute_force(GpuDevice& device, const LightSource& source, const lightbin::View& view,
                                 std::size_t room, const TurnsOf& turns, GpuRow& row) {
-    CoveringBuild cpu(cluster_slices(), {});
+    CpuBuild<lightbin::Options{}> cpu(cluster_slices(), {});
     BruteForce brute(device, view, row.lights, std::uint32_t(room));
     std::vector<double> runs;
     for (int turn = 0; turn < turns.timed; ++turn) {
-        const auto grid = cpu(source.frames[std::size_t(turn) % source.frames.size()], view);
-        brute.upload(cpu.binner().coverage());
+        const GpuFrame& frame = source.frames[std::size_t(turn) % source.frames.size()];
+        const auto grid = cpu(frame, view);
+        brute.upload(coverage_of(frame, view));
         runs.push_back(brute.run());
         const Difference d = compare(brute.read(), grid.ranges(), grid.ids());
         row.brute_wrong += d.missed + d.more + d.unordered;
@@ -137,10 +142,9 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
         row.difference += compare(gpu.read(), grid.ranges(), grid.ids());
     }
     {
-        CpuBuild<lightbin::Options{.slicing = options.slicing, .coverage = true}> covering(slices, {});
-        const auto grid = covering(first, view);
-        row.in_view = grid.light_counts().lights - grid.light_counts().rejected - grid.light_counts().culled;
-        row.tests = tests_of(covering.binner().coverage(), gpu.plan(), clusters ? &slices : nullptr);
+        const std::vector<lightbin::LightCoverage> covered = coverage_of(first, view);
+        row.in_view = covered.size();
+        row.tests = tests_of(covered, gpu.plan(), clusters ? &slices : nullptr);
     }
 
     std::vector<double> builds, sends, uploads, runs;

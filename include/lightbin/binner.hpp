@@ -6,7 +6,6 @@
 #include <lightbin/detail/depth/ranked_footprints.hpp>
 #include <lightbin/detail/depth/sliced_footprints.hpp>
 #include <lightbin/detail/engine/grid_lists.hpp>
-#include <lightbin/detail/project/light_coverage.hpp>
 #include <lightbin/list_format.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -102,10 +101,6 @@ public:
                              visible().slices(), visible().ranks());
     }
 
-    /// Returns what each light in view covers, in ascending order of id, for the lights and the view of the last call
-    /// of bin(). It is valid until the next call. After an error it may be empty.
-    std::span<const LightCoverage> coverage() const requires(options.coverage) { return coverage_.all(); }
-
 private:
     using Lists = detail::GridLists<Id, options.depth_test, clusters>;
     struct Nothing {};
@@ -122,13 +117,11 @@ private:
     std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
-        if constexpr (options.coverage) coverage_.clear();
         if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, options.depth_test);
-        if constexpr (options.coverage) coverage_.template find<kind<LightRange>>(view, footprints_, threads);
         if constexpr (Inputs::reads_slices)
             return ordered_.template order<kind<LightRange>>(isa_, view, footprints_, inputs.slices);
         else
@@ -149,15 +142,13 @@ private:
         std::swap(footprints_, other.footprints_);
         std::swap(ordered_, other.ordered_);
         std::swap(lists_, other.lists_);
-        std::swap(coverage_, other.coverage_);
     }
 
     Isa isa_ = Isa::scalar;
     detail::Buffer<detail::Scratch> scratch_;  ///< working memory, one Scratch per worker
-    Footprints<with_depth || options.slicing != Slicing::none || options.coverage> footprints_;
+    Footprints<with_depth || options.slicing != Slicing::none> footprints_;
     Ordered ordered_;
     Lists lists_;
-    std::conditional_t<options.coverage, detail::CoverageList, Nothing> coverage_;
 };
 
 }}  // namespace lightbin

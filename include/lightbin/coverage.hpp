@@ -2,13 +2,19 @@
 // What each light covers: its tiles, its depths and its size in pixels; and in how many cells it is listed.
 #pragma once
 
+#include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/detail/project/light_extent.hpp>
 #include <lightbin/light_grid.hpp>
+
+#include <vector>
+
+#include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// What a light in view covers. Binner::coverage() returns one for each light in view, with Options{.coverage = true}.
+/// What a light in view covers.
 struct LightCoverage {
-    std::uint32_t id;  ///< the light's index in the array that was binned, with Slicing::z_bins too
+    std::uint32_t id;  ///< the light's index in the caller's array
     /// The rectangle of the light's footprint: tile columns x0 to x1 and tile rows y0 to y1, ends included.
     std::uint16_t x0, y0, x1, y1;
     /// The light's least and greatest view depth, rounded outward. The light may reach in front of the view's near
@@ -20,6 +26,60 @@ struct LightCoverage {
     /// with an infinite radius.
     float pixels;
 };
+
+namespace detail {
+
+/// Stores the LightCoverage of each light in view, in ascending order of id.
+///
+/// footprints  of lights of the LightKind `kind`, with the lights in view space
+/// to          room for footprints.visible() lights
+template <LightKind kind, class AnyFootprints>
+LIGHTBIN_ONCE void find_coverage(const View& view, const AnyFootprints& footprints, const Parallel& parallel,
+                                 LightCoverage* to) {
+    const std::span<const FootprintRun> runs = footprints.runs();
+    const FootprintArrays& from = footprints.arrays();
+    // The next float above a depth that was rounded to nearest, so that the exact depth is less; infinity as it is.
+    const auto next_above = [](float depth) { return is_finite(depth) ? -next_below(-depth) : depth; };
+    parallel.run(runs.size(), [&](std::size_t run) {
+        LightCoverage* light = to;
+        for (const FootprintRun& before : runs.first(run))
+            light += before.end - before.begin;
+        for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
+            const LightExtent extent = extent_of<kind>(camera_of(view), from.view_lights, from.ids[i]);
+            const double tiles = tiles_across(camera_of(view), extent.sphere);
+            *light++ = {from.ids[i],
+                        from.x0[i],
+                        from.y0[i],
+                        from.x1[i],
+                        from.y1[i],
+                        -next_above(-extent.nearest),
+                        next_above(extent.farthest),
+                        float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
+        }
+    });
+}
+
+}  // namespace detail
+
+/// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
+/// are projected for it, as Binner::bin() projects them for the lists.
+///
+/// lights, threads  as for Binner::bin()
+/// isa              use no wider instructions than these. The result does not depend on it.
+///
+/// Errors: more than 2^32 - 1 lights; a world_space() matrix that is not affine.
+template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
+Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& lights, const Threads& threads = {},
+                                            Isa isa = compiled_isa) {
+    const auto& source = detail::as_lights(lights);
+    if (const auto error = detail::refuse(source)) return *error;
+    const detail::DefaultFloatEnvironment environment;
+    Footprints<true> footprints;
+    footprints.project(machine_isa(isa), view, source, threads);
+    std::vector<LightCoverage> found(footprints.visible());
+    detail::find_coverage<std::remove_cvref_t<decltype(source)>::kind>(view, footprints, threads, found.data());
+    return found;
+}
 
 /// Writes to `entries` the number of cells that list each light, in the order of the array that was binned. Returns how
 /// many lights are listed in at least one cell. A light in view that no cell lists reaches nothing that is drawn: the
@@ -47,3 +107,5 @@ Result<std::uint32_t> count_entries(const LightGrid<Id>& grid, std::span<std::ui
 }
 
 }}  // namespace lightbin
+
+#include <lightbin/detail/base/warnings_on.inl>

@@ -92,7 +92,6 @@ typedef enum lightbin_error {
     LIGHTBIN_NOT_READ = 10,        /* slices, Z bounds or a matrix were given that the options do not read */
     LIGHTBIN_BUFFER_TOO_SMALL = 12,
     LIGHTBIN_CALLBACK_THREW = 13,  /* a C++ callback of the program threw an exception */
-    LIGHTBIN_COVERAGE_IS_OFF = 14, /* the binner's options do not ask for coverage */
     /* A grid is not at the beginning of the memory that another is copied behind it in */
     LIGHTBIN_OTHER_MEMORY = 15,
     LIGHTBIN_NO_SUCH_ISA = 16, /* an instruction set that this machine, or the library as it is compiled, lacks */
@@ -490,7 +489,6 @@ typedef struct lightbin_binner_options {
      * tile between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters. */
     int32_t depth_test;
     int32_t slicing;  /* a lightbin_slicing */
-    int32_t coverage; /* not 0: find what each light covers, for lightbin_binner_coverage() */
     int32_t isa;      /* a lightbin_isa: use no wider instructions than these; the lists are the same */
 } lightbin_binner_options;
 
@@ -562,19 +560,23 @@ LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbi
                                           lightbin_grid* grid);
 
 /* What a light in view covers. */
-typedef struct lightbin_coverage {
-    uint32_t id;             /* the light's id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too */
+typedef struct lightbin_light_coverage {
+    uint32_t id;             /* the light's id as lightbin_lights numbers it */
     uint16_t x0, y0, x1, y1; /* tile columns x0 to x1 and tile rows y0 to y1, ends included */
     float nearest, farthest; /* the least and greatest view depth of the light, rounded outward */
     float pixels; /* larger side of the rectangle around its projection in the image, rounded up; +inf if unknown */
-} lightbin_coverage;
+} lightbin_light_coverage;
 
-/* Returns what each light in view covers, in ascending order of id, for the last lightbin_bin() of
- * a binner made with lightbin_binner_options::coverage: for shadow atlases and levels of detail. On success *lights
- * refers to *count elements in memory of the binner, which is
- * valid until its next call. Errors: LIGHTBIN_COVERAGE_IS_OFF. */
-LIGHTBIN_API lightbin_result lightbin_binner_coverage(const lightbin_binner* binner,
-                                                      const lightbin_coverage** lights, size_t* count);
+/* Writes what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
+ * are projected for it, as lightbin_bin() projects them for the lists.
+ *
+ * threads   null: none
+ * coverage  memory for `capacity` elements: there are never more than lights. *count is how many lights are in view
+ *
+ * Errors: LIGHTBIN_BUFFER_TOO_SMALL; those of lightbin_bin() that are about the lights and the threads. */
+LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* lights,
+                                               const lightbin_threads* threads, lightbin_light_coverage* coverage,
+                                               size_t capacity, size_t* count);
 
 /* ---- Finished grids ----
  *

@@ -31,7 +31,6 @@ struct Options {
     Slicing slicing = Slicing::none;
     /// The widest instruction set to use, even where the machine has a wider one. The result is the same.
     Isa isa = compiled_isa;
-    bool coverage = false;  ///< find what each light in view covers, for Binner::coverage()
 };
 
 }}  // namespace lightbin

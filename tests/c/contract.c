@@ -446,38 +446,37 @@ static void test_grids(void) {
     lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
     lightbin_lights lights = lights_given();
     lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
-    lightbin_binner *binner = NULL, *plain = NULL, *sixteen = NULL;
+    lightbin_binner *binner = NULL, *sixteen = NULL;
     lightbin_view* view = NULL;
     lightbin_budget* budget = NULL;
     lightbin_grid_union* grid_union = NULL;
     lightbin_cut cut;
-    const lightbin_coverage* coverage = NULL;
+    static lightbin_light_coverage coverage[light_count];
+    lightbin_threads threads;
     static uint32_t entries[light_count];
     static float weights[light_count];
     static lightbin_range ranges[2 * tile_count];
     uint32_t *ids, listed = 0, sum = 0;
     size_t count = 0, i;
     CLEAR(cut);
-    options.coverage = 1;
     for (i = 0; i < light_count; ++i)
         weights[i] = (float)(i % 7);
     CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
-    if (lightbin_binner_create(&options, &binner).error != LIGHTBIN_OK) {
-        CHECK(binner == NULL); /* coverage is left out */
-        lightbin_view_destroy(view);
-        return;
-    }
-    CHECK(lightbin_binner_create(NULL, &plain).error == LIGHTBIN_OK);
-
-    CHECK(refuses(lightbin_binner_coverage(NULL, &coverage, &count), LIGHTBIN_NULL_ARGUMENT, "binner"));
-    CHECK(refuses(lightbin_binner_coverage(binner, NULL, &count), LIGHTBIN_NULL_ARGUMENT, "lights"));
-    CHECK(refuses(lightbin_binner_coverage(binner, &coverage, NULL), LIGHTBIN_NULL_ARGUMENT, "count"));
-    CHECK(refuses(lightbin_binner_coverage(plain, &coverage, &count), LIGHTBIN_COVERAGE_IS_OFF, "binner"));
-    CHECK(lightbin_binner_coverage(binner, &coverage, &count).error == LIGHTBIN_OK &&
-          count == 0); /* no call yet */
+    CHECK(lightbin_binner_create(&options, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
-    CHECK(lightbin_binner_coverage(binner, &coverage, &count).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_coverage(NULL, &lights, NULL, coverage, light_count, &count), LIGHTBIN_NULL_ARGUMENT,
+                  "view"));
+    CHECK(refuses(lightbin_coverage(view, NULL, NULL, coverage, light_count, &count), LIGHTBIN_NULL_ARGUMENT,
+                  "lights"));
+    CHECK(refuses(lightbin_coverage(view, &lights, NULL, coverage, light_count, NULL), LIGHTBIN_NULL_ARGUMENT,
+                  "count"));
+    CLEAR(threads);
+    CHECK(refuses(lightbin_coverage(view, &lights, &threads, coverage, light_count, &count),
+                  LIGHTBIN_NULL_ARGUMENT, "threads.run"));
+    CHECK(refuses(lightbin_coverage(view, &lights, NULL, NULL, 0, &count), LIGHTBIN_BUFFER_TOO_SMALL, "coverage"));
     CHECK(count == grid.lights - grid.rejected - grid.culled && count > 0);
+    CHECK(lightbin_coverage(view, &lights, NULL, coverage, count, &count).error == LIGHTBIN_OK);
+    CHECK(count == grid.lights - grid.rejected - grid.culled);
     CHECK(coverage[0].x1 >= coverage[0].x0 && coverage[0].x1 < 20 &&
           coverage[0].nearest <= coverage[0].farthest);
     CHECK(grid.first_spot == 200 && grid.first_box == light_count);
@@ -559,7 +558,6 @@ static void test_grids(void) {
     CHECK(ranges[tile_count].offset == grid.id_count && ranges[tile_count + 9].count == ranges[9].count);
     CHECK(memcmp(ids, ids + grid.id_count, (size_t)grid.id_count * sizeof *ids) == 0);
     options.ids = LIGHTBIN_U16;
-    options.coverage = 0;
     if (lightbin_binner_create(&options, &sixteen).error == LIGHTBIN_OK) {
         narrow = empty_grid();
         CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
@@ -574,7 +572,6 @@ static void test_grids(void) {
     lightbin_grid_union_destroy(grid_union);
     lightbin_grid_union_destroy(NULL);
     lightbin_binner_destroy(sixteen);
-    lightbin_binner_destroy(plain);
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
 }

@@ -21,7 +21,7 @@ static void works(lightbin_result result) {
     exit(EXIT_FAILURE);
 }
 
-static lightbin_result create(int ids, int depth_test, int slicing, int coverage) {
+static lightbin_result create(int ids, int depth_test, int slicing) {
     lightbin_binner* binner = NULL;
     lightbin_binner_options options;
     memset(&options, 0, sizeof options);
@@ -29,7 +29,6 @@ static lightbin_result create(int ids, int depth_test, int slicing, int coverage
     options.ids = ids;
     options.depth_test = depth_test;
     options.slicing = slicing;
-    options.coverage = coverage;
     return lightbin_binner_create(&options, &binner);
 }
 
@@ -64,10 +63,10 @@ int main(void) {
     works(lightbin_bin(binner, view, &given, NULL, &grid));
     if (grid.range_count != 16 || grid.id_count == 0) return EXIT_FAILURE;
 
-    refuses(create(LIGHTBIN_U16, 0, 0, 0), "LIGHTBIN_NO_U16");
-    refuses(create(0, 1, 0, 0), "LIGHTBIN_NO_DEPTH_TEST");
-    refuses(create(0, 0, LIGHTBIN_CLUSTERS, 0), "LIGHTBIN_NO_CLUSTERS");
-    refuses(create(0, 0, LIGHTBIN_Z_BINS, 0), "LIGHTBIN_NO_Z_BINS");
+    refuses(create(LIGHTBIN_U16, 0, 0), "LIGHTBIN_NO_U16");
+    refuses(create(0, 1, 0), "LIGHTBIN_NO_DEPTH_TEST");
+    refuses(create(0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
+    refuses(create(0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
     {
         lightbin_inputs inputs;
         lightbin_threads threads;
@@ -91,7 +90,6 @@ int main(void) {
     given.boxes.half_axes.first = half_axes;
     refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
     works(lightbin_tube_sphere(lights, lights + 4, 1, &sphere));
-    refuses(create(0, 0, 0, 1), "LIGHTBIN_NO_COVERAGE");
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
     puts("every check passed");

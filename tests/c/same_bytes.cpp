@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The C side and the C++ side on the same random inputs give the same bytes. The C side's functions are in a library of
 // their own; this file includes both headers, as a program may that moves from one side to the other.
+#include <lightbin/coverage.hpp>
 #include <lightbin/lightbin.h>
 
 #include <lightbin/box.hpp>
@@ -326,7 +327,6 @@ template <Options options> void compare_sides() {
                                      options.ids == IdWidth::u16 ? LIGHTBIN_U16 : LIGHTBIN_U32,
                                      options.depth_test,
                                      static_cast<std::int32_t>(options.slicing),
-                                     options.coverage,
                                      LIGHTBIN_WIDEST};
     for (int round = 0; round < 8; ++round) {
         CAPTURE(round);
@@ -369,12 +369,13 @@ template <Options options> void compare_sides() {
                 const auto cpp_grid = *expected.bin(cpp_view, cpp_lights, cpp_inputs);
                 compare(cpp_grid, grid);
                 if (round < 2) compare_uses(cpp_grid, grid, random);
-                if constexpr (options.coverage) {
-                    const lightbin_coverage* covered = nullptr;
+                if constexpr (options.ids == IdWidth::u16) {
+                    std::vector<lightbin_light_coverage> covered(count);
                     std::size_t covered_count = 0;
-                    REQUIRE(lightbin_binner_coverage(binner.get(), &covered, &covered_count).error ==
-                            LIGHTBIN_OK);
-                    CHECK(equal(expected.coverage(), covered, covered_count));
+                    REQUIRE(lightbin_coverage(view.get(), &lights, inputs.threads, covered.data(), count, &covered_count)
+                                .error == LIGHTBIN_OK);
+                    CHECK(equal(std::span<const LightCoverage>(*coverage(cpp_view, cpp_lights)), covered.data(),
+                                covered_count));
                 }
             };
             const auto world = matrix(scene.view_matrix, MatrixLayout::column_major);
@@ -403,10 +404,8 @@ template <Options options> void compare_sides() {
 
 /// Compares both widths of ids, and with 16 bits what lights cover.
 template <Options options> void compare_ids() {
-    constexpr Options narrow = {.ids = IdWidth::u16,
-                                .depth_test = options.depth_test,
-                                .slicing = options.slicing,
-                                .coverage = true};
+    constexpr Options narrow = {
+        .ids = IdWidth::u16, .depth_test = options.depth_test, .slicing = options.slicing};
     compare_sides<options>();
     compare_sides<narrow>();
 }

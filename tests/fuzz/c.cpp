@@ -327,7 +327,6 @@ void use_calls(Bytes bytes) {
     lightbin_binner_options options = {};
     options.size = sizeof options;
     options.ids = take_number(bytes, 3), options.depth_test = bytes.flag(), options.slicing = take_number(bytes, 3);
-    options.coverage = bytes.flag();
     succeeded(lightbin_binner_create(&options, &binner));
 
     std::size_t tiles = 0;
@@ -395,9 +394,10 @@ void use_calls(Bytes bytes) {
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
             succeeded(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
             use_grid(grid, budget, grid_union, bytes);
-            const lightbin_coverage* covered = nullptr;
+            std::vector<lightbin_light_coverage> covered(grid.lights);
             std::size_t covered_count = 0;
-            if (succeeded(lightbin_binner_coverage(binner, &covered, &covered_count)))
+            if (succeeded(lightbin_coverage(view, &lights, inputs.threads, covered.data(), covered.size(),
+                                            &covered_count)))
                 require(covered_count == grid.lights - grid.rejected - grid.culled,
                         "coverage of other lights");
             std::vector<lightbin_range> ranges(grid.range_count);

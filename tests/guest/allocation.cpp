@@ -111,7 +111,7 @@ TEST_CASE("a warm Binner does not allocate, nor does a warm Budget") {
     check_options<Options{.ids = IdWidth::u16, .depth_test = true}>();
     check_options<Options{.depth_test = true, .slicing = Slicing::clusters}>();
     check_options<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
-    check_options<Options{.depth_test = true, .coverage = true}>();
+    check_options<Options{.depth_test = true}>();
 }
 
 TEST_CASE("nor does one that has threads and fewer lights the second time") {

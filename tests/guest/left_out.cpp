@@ -18,7 +18,7 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
             body(i);
         }
     };
-    lightbin::Binner<lightbin::Options{.depth_test = true, .coverage = true}> binner;
+    lightbin::Binner<lightbin::Options{.depth_test = true}> binner;
     const auto grid = binner.bin(view, lights, {.bounds = bounds}, lightbin::Parallel(4, loop));
     lightbin::Binner<lightbin::Options{.depth_test = true, .slicing = lightbin::Slicing::clusters}> cluster_binner;
     const auto clusters = cluster_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
@@ -27,7 +27,7 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
     lightbin::Budget<> budget;
     const auto limited = budget.limit(*clusters, {}, {.per_cell = 9});
     return grid && clusters && ranked && limited
-               ? grid->ids().size() + binner.coverage().size() + clusters->ids().size() + ranked->ids().size()
+               ? grid->ids().size() + clusters->ids().size() + ranked->ids().size()
                : 0;
 #else
     static_cast<void>(bounds);

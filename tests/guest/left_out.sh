@@ -15,11 +15,11 @@ compile -O0 -DALL_OPTIONS -o "$work/on.o"
 nm -C "$work/off.o" >"$work/off"
 nm -C "$work/on.o" >"$work/on"
 
-# Functions of the depth test, of sharing work among threads, of slices, of coverage, of budgets. The Binner with all
+# Functions of the depth test, of sharing work among threads, of slices, of budgets. The Binner with all
 # options has each of them: a name that is nowhere would prove nothing.
 for function in tiles_met arrange_cells store_boxes tile_edges find_edges mask_lights share_rows share_steps \
     build_shares SlicedFootprints RankedFootprints SliceTable::find \
-    find_depth_buckets arrange_slab store_met_boxes tiles_across CoverageList Budget; do
+    find_depth_buckets arrange_slab store_met_boxes Budget; do
     grep -qw "$function" "$work/on" || { echo "no $function with all options on" >&2; exit 1; }
     if grep -w "$function" "$work/off"; then
         echo "$function is there with all options off" >&2

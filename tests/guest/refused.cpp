@@ -140,7 +140,7 @@ int main() {
     const std::vector<lightbin::Spot> spots;
     const double projection[4][4] = {};
     const auto view = lightbin::View::from_projection(projection, {64, 64});
-    lightbin::Binner<lightbin::Options{.coverage = true}> binner;
+    lightbin::Binner<> binner;
     return view && binner.bin(*view, lightbin::lights(spheres, spots)) ? 1 : 0;
 }
 #endif

@@ -3,6 +3,7 @@
 #include <lightbin/advise.hpp>
 #include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
+#include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
@@ -114,9 +115,9 @@ void use_encodings(Hash& hash, const auto& grid) {
 
 /// weights  one per light
 void use_coverage(Hash& hash, const View& view, const auto& lights, const std::vector<float>& weights) {
-    Binner<Options{.ids = IdWidth::u16, .coverage = true}> binner;
+    Binner<Options{.ids = IdWidth::u16}> binner;
     const auto grid = value_of(binner.bin(view, lights));
-    for (const LightCoverage& light : binner.coverage()) {
+    for (const LightCoverage& light : value_of(coverage(view, lights))) {
         hash.add(light.id + std::uint64_t{65536} * light.x0 + light.y1);
         for (const float number : {light.nearest, light.farthest, light.pixels})
             hash.add(std::bit_cast<std::uint32_t>(number));

@@ -13,6 +13,7 @@
 
 #include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
+#include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -286,14 +287,17 @@ private:
         add_grid(hash, *grid);
         if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none && !options.depth_test)
             add_encodings(hash, *grid);
-        if constexpr (options.coverage) add_coverage(hash, *grid);
+        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none && options.depth_test)
+            add_coverage(hash, *grid, *coverage(scene.view, lights, parallel, options.isa));
         return hash.value();
     }
 
-    /// What the lights cover, and a budget by their sizes in pixels, among which are infinite ones; of lights out of view NaN.
-    template <class Id> void add_coverage(Hash& hash, const LightGrid<Id>& grid) {
+    /// What the lights cover, and a budget by their sizes in pixels, among which are infinite ones; of lights out of
+    /// view NaN.
+    template <class Id>
+    void add_coverage(Hash& hash, const LightGrid<Id>& grid, const std::vector<LightCoverage>& covered) {
         std::vector<float> weights(grid.light_counts().lights, std::numeric_limits<float>::quiet_NaN());
-        for (const LightCoverage& light : binner_.coverage()) {
+        for (const LightCoverage& light : covered) {
             hash.add(light.id | std::uint64_t{light.x0} << 32 | std::uint64_t{light.y0} << 48);
             hash.add(light.x1 | std::uint64_t{light.y1} << 32);
             hash.add(light.nearest);
@@ -415,14 +419,13 @@ void check_texts() {
 void check_lists(const std::vector<Scene>& scenes) {
     check<Options{}>("rectangle", scenes);
     check<Options{.ids = IdWidth::u16}>("rectangle, 16 bits", scenes);
-    check<Options{.depth_test = true}>("depth test", scenes);
+    check<Options{.depth_test = true}>("depth test, coverage", scenes);
     check<Options{.ids = IdWidth::u16, .depth_test = true}>("depth test, 16 bits", scenes);
     check<Options{.slicing = Slicing::clusters}>("clusters", scenes);
     check<Options{.ids = IdWidth::u16, .slicing = Slicing::clusters}>("clusters, 16 bits", scenes);
     check<Options{.depth_test = true, .slicing = Slicing::clusters}>("depth test, clusters", scenes);
     check<Options{.slicing = Slicing::z_bins}>("z_bins", scenes);
     check<Options{.depth_test = true, .slicing = Slicing::z_bins}>("depth test, z_bins", scenes);
-    check<Options{.depth_test = true, .coverage = true}>("depth test, coverage", scenes);
 }
 
 /// Of what is made of the same scenes in an environment, and the views and slices as well.

@@ -1,6 +1,8 @@
 // What each light covers, against the lists, against exact depths, and against projected points of the lights.
 #include "scene.hpp"
 
+#include <lightbin/coverage.hpp>
+
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,15 +12,6 @@
 using namespace lightbin;
 
 namespace {
-
-constexpr Options with_coverage(Options options) {
-    options.coverage = true;
-    return options;
-}
-
-std::vector<LightCoverage> coverage_of(const auto& binner) {
-    return {binner.coverage().begin(), binner.coverage().end()};
-}
 
 bool same(const std::vector<LightCoverage>& a, const std::vector<LightCoverage>& b) {
     static_assert(sizeof(LightCoverage) == 24);  // no padding, whose bytes could differ
@@ -147,13 +140,13 @@ TEST_CASE(
             const auto check =
                 [&]<Options options>(const auto& lights,
                                      const Inputs<options.depth_test, options.slicing>& inputs) {
-                    Binner<with_coverage(options)> binner;
+                    Binner<options> binner;
                     const auto grid = binner.bin(view, lights, inputs);
                     REQUIRE(grid);
-                    const auto coverage = coverage_of(binner);
+                    const auto covered = *coverage(view, lights);
                     const LightCounts& counts = grid->light_counts();
-                    CHECK(coverage.size() == counts.lights - counts.rejected - counts.culled);
-                    CHECK(same_rectangles(coverage, listed_rectangles(*grid, count)));
+                    CHECK(covered.size() == counts.lights - counts.rejected - counts.culled);
+                    CHECK(same_rectangles(covered, listed_rectangles(*grid, count)));
                 };
             check.template operator()<Options{}>(spheres, {});
             check.template operator()<Options{.ids = IdWidth::u16}>(spots, {});
@@ -162,38 +155,19 @@ TEST_CASE(
         }
 }
 
-TEST_CASE("what a light covers depends on no other option, on no tier and on no thread") {
+TEST_CASE("what a light covers depends on no tier and on no thread") {
     const View view = test::view({640, 360}, 32);
-    const Slices slices = *Slices::exponential(6, 2, 70);
-    const std::vector<float> min(view.tile_count(), 5.0f), max(view.tile_count(), 20.0f);
-    const ZBounds bounds = {.min = min, .max = max};
     const glm::mat4 camera = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(4, 2, -9), glm::vec3(0.1f, 1, 0));
     const auto vectors = test::random_lights(1500, 11);
     const auto spots = some_spots(1500, 12);
     const auto check = [&](const auto& lights) {
-        Binner<Options{.isa = Isa::scalar, .coverage = true}> by_itself;
-        REQUIRE(by_itself.bin(view, lights));
-        const auto coverage = coverage_of(by_itself);
-        CHECK(coverage.size() > 300);
+        const auto expected = *coverage(view, lights, {}, Isa::scalar);
+        CHECK(expected.size() > 300);
         test::on_machine_tiers([&]<Isa isa>() {
-            const auto agrees = [&]<Options options>() {
-                Binner<with_coverage(options)> binner;
-                const auto inputs = inputs_for<with_coverage(options)>(bounds, slices);
-                REQUIRE(binner.bin(view, lights, inputs));
-                CHECK(same(coverage_of(binner), coverage));
-                REQUIRE(binner.bin(view, std::vector<glm::vec4>(), inputs));
-                CHECK(coverage_of(binner).empty());
-                REQUIRE(binner.bin(view, lights, inputs, Parallel(3, test::on_threads)));
-                CHECK(same(coverage_of(binner), coverage));
-            };
-            agrees.template operator()<Options{.isa = isa}>();
-            agrees.template operator()<Options{.depth_test = true, .isa = isa}>();
-            agrees.template operator()<Options{.depth_test = true, .slicing = Slicing::clusters, .isa = isa}>();
-            agrees.template operator()<Options{.depth_test = true, .slicing = Slicing::z_bins, .isa = isa}>();
+            CHECK(same(*coverage(view, lights, {}, isa), expected));
+            CHECK(same(*coverage(view, lights, Parallel(3, test::on_threads), isa), expected));
         });
-        const auto moved = std::move(by_itself);
-        CHECK(same(coverage_of(moved), coverage));
-        CHECK(by_itself.coverage().empty());
+        CHECK(same(*coverage(view, lights), expected));
     };
     check(vectors);
     check(spots);
@@ -201,15 +175,15 @@ TEST_CASE("what a light covers depends on no other option, on no tier and on no 
     check(world_space(spots, camera));
 }
 
-TEST_CASE("after a call that refused its lights there is no coverage") {
+TEST_CASE("what a Binner refuses of lights has no coverage") {
     const View view = test::view({640, 360}, 32);
     const auto lights = test::random_lights(100, 1);
-    Binner<Options{.coverage = true}> binner;
-    CHECK(binner.coverage().empty());
-    REQUIRE(binner.bin(view, lights));
-    CHECK(!binner.coverage().empty());
-    CHECK(!binner.bin(view, world_space(lights, glm::mat4(NAN))));
-    CHECK(binner.coverage().empty());
+    CHECK(coverage(view, std::vector<Sphere>())->empty());
+    CHECK(!coverage(view, lights)->empty());
+    const auto refused = coverage(view, world_space(lights, glm::mat4(NAN)));
+    REQUIRE(!refused);
+    Binner<> binner;
+    CHECK(refused.error().code == binner.bin(view, world_space(lights, glm::mat4(NAN))).error().code);
 }
 
 TEST_CASE("the depths of a sphere enclose it, and are no more than a few floats wider") {
@@ -222,9 +196,8 @@ TEST_CASE("the depths of a sphere enclose it, and are no more than a few floats 
         lights.push_back({0, 0, forward * 1e-3, 9});
         lights.push_back({0, 0, -FLT_MAX * forward, FLT_MAX});
         lights.push_back({0, 0, FLT_MAX * forward, FLT_MAX});
-        Binner<Options{.coverage = true}> binner;
-        REQUIRE(binner.bin(view, lights));
-        for (const LightCoverage& light : binner.coverage()) {
+        const auto covered = *coverage(view, lights);
+        for (const LightCoverage& light : covered) {
             const long double z = static_cast<long double>(forward) * lights[light.id].z,
                               r = lights[light.id].w;
             CHECK(light.nearest <= z - r);
@@ -242,11 +215,10 @@ TEST_CASE("a sphere's size in pixels is that of its projection, cut off at the n
           "viewport's edge") {
     for (const View& view : views()) {
         const auto lights = lights_before(view, 400, 31);
-        Binner<Options{.coverage = true}> binner;
-        REQUIRE(binner.bin(view, lights));
-        CHECK(binner.coverage().size() > 50);
+        const auto covered = *coverage(view, lights);
+        CHECK(covered.size() > 50);
         int finite = 0, larger_than_viewport = 0;
-        for (const LightCoverage& light : binner.coverage()) {
+        for (const LightCoverage& light : covered) {
             const glm::dvec4 sphere(lights[light.id]);
             const double sampled = sampled_pixels(view, sphere);
             CHECK(double{light.pixels} >= sampled);
@@ -268,12 +240,11 @@ TEST_CASE("the size in pixels of small, large and infinite spheres") {
                                         {0, 0, -500, 1},         {3, -2, -9, 1},     {0, 0, -10, 9.89f},
                                         {0, 0, -10, 9.94f},      {0, 0, 0, 0.2f},    {0, 0, -10, HUGE_VALF},
                                         {0, 0, -1e6f, 999500.0f}};
-    Binner<Options{.coverage = true}> binner;
-    REQUIRE(binner.bin(view, lights));
-    REQUIRE(binner.coverage().size() == lights.size());
+    const auto covered = *coverage(view, lights);
+    REQUIRE(covered.size() == lights.size());
     const auto near_is = [&](std::size_t i, double pixels) {
-        CHECK(double{binner.coverage()[i].pixels} >= pixels);
-        CHECK(double{binner.coverage()[i].pixels} <= pixels * (1 + 1e-5) + 1e-3);
+        CHECK(double{covered[i].pixels} >= pixels);
+        CHECK(double{covered[i].pixels} <= pixels * (1 + 1e-5) + 1e-3);
     };
     const auto tangents = [&](double z, double r) {
         return 2 * r / std::sqrt((z - r) * (z + r)) * per_slope;
@@ -290,7 +261,7 @@ TEST_CASE("the size in pixels of small, large and infinite spheres") {
     CHECK(touches > 0.1);
     near_is(6, tangents(10, r));
     near_is(7, 2 * std::sqrt(0.2f * 0.2 - 0.01) / 0.1 * per_slope);
-    CHECK(binner.coverage()[8].pixels == HUGE_VALF);
+    CHECK(covered[8].pixels == HUGE_VALF);
     near_is(9, tangents(1e6, 999500));
 }
 
@@ -300,13 +271,13 @@ TEST_CASE("a light in view has a size in pixels, however small it is") {
     const std::vector<Sphere> spheres = {{0, 0, -9, 0}, {0, 0, -3e38f, 0}, {1, 2, -9, 1e-45f}};
     const std::vector<Spot> spots = {{0, 0, -3e38f, 0, 0, 1, 0, 0.9f}, {1, 2, -9, 1e-45f, 0, 1, 0, 0.5f}};
     const std::vector<Box> boxes = {box};
-    Binner<Options{.coverage = true}> binner;
     for (const float scale : {1.0f, 1e-5f}) {  // the box's half axes are 0 in float once they are scaled
         const glm::mat4 to_view = glm::scale(glm::mat4(1), glm::vec3(scale));
-        REQUIRE(binner.bin(view, lights(world_space(spheres, glm::mat4(1)), world_space(spots, glm::mat4(1)),
-                                        world_space(boxes, glm::translate(to_view, {0, 0, 9 - 9 / scale})))));
-        CHECK(binner.coverage().size() == 6);
-        for (const LightCoverage& light : binner.coverage()) {
+        const auto covered =
+            *coverage(view, lights(world_space(spheres, glm::mat4(1)), world_space(spots, glm::mat4(1)),
+                                   world_space(boxes, glm::translate(to_view, {0, 0, 9 - 9 / scale}))));
+        CHECK(covered.size() == 6);
+        for (const LightCoverage& light : covered) {
             CHECK(light.pixels > 0);
             CHECK(light.pixels < 1);
             CHECK(light.nearest <= light.farthest);
@@ -332,14 +303,10 @@ TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of
                             axis = back * glm::vec3(spot.axis_x, spot.axis_y, spot.axis_z);
             spot = {at.x, at.y, at.z, spot.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
         }
-        Binner<Options{.coverage = true}> binner;
         for (const bool world : {false, true}) {
-            if (world)
-                REQUIRE(binner.bin(view, world_space(in_world, camera)));
-            else
-                REQUIRE(binner.bin(view, spots));
-            CHECK(binner.coverage().size() > 40);
-            for (const LightCoverage& light : binner.coverage()) {
+            const auto covered = world ? *coverage(view, world_space(in_world, camera)) : *coverage(view, spots);
+            CHECK(covered.size() > 40);
+            for (const LightCoverage& light : covered) {
                 const Spot& spot = spots[light.id];
                 const double r = spot.radius, slack = world ? 1e-4 * (r + std::fabs(spot.z)) : 0;
                 const glm::dvec3 apex(spot.x, spot.y, spot.z),
@@ -420,12 +387,12 @@ TEST_CASE("entries are counted for each light, also by rank and with clusters, a
     CHECK(drawn < all);
 
     // Of lights in view, those whose depths meet no Z bounds are listed nowhere.
-    Binner<Options{.depth_test = true, .coverage = true}> binner;
+    Binner<Options{.depth_test = true}> binner;
     const auto grid = binner.bin(view, lights, {.bounds = {.min = min, .max = max}});
     REQUIRE(grid);
     std::vector<std::uint32_t> entries(lights.size());
     REQUIRE(count_entries(*grid, entries));
-    for (const LightCoverage& light : binner.coverage()) {
+    for (const LightCoverage& light : *coverage(view, lights)) {
         const float z = -lights[light.id].z, r = lights[light.id].w;
         if (entries[light.id] > 0) CHECK((z - r <= 14 && z + r >= 12));
     }

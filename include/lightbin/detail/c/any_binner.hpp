@@ -55,9 +55,6 @@ constexpr const char* left_out(const Options& options) {
 #if defined(LIGHTBIN_NO_Z_BINS)
     if (options.slicing == Slicing::z_bins) return "LIGHTBIN_NO_Z_BINS";
 #endif
-#if defined(LIGHTBIN_NO_COVERAGE)
-    if (options.coverage) return "LIGHTBIN_NO_COVERAGE";
-#endif
     static_cast<void>(options);
     return nullptr;
 }
@@ -103,13 +100,12 @@ public:
     ///
     /// for_boxes  whether there is a depth test
     virtual std::optional<Error> project(Isa isa, const Call& call, bool for_boxes) = 0;
-    virtual void find_coverage(const Call& call, detail::CoverageList& coverage) = 0;
     virtual Projected projected() const = 0;
 };
 
 /// The Projection for a slicing.
 ///
-/// keeps_lights  whether the lights are kept in view space, for a depth test, slices or coverage
+/// keeps_lights  whether the lights are kept in view space, for a depth test or slices
 template <bool keeps_lights, Slicing slicing>
 class ProjectionOf final : public Projection {
     struct Nothing {};
@@ -125,15 +121,6 @@ public:
         } else {
             return {};
         }
-    }
-
-    LIGHTBIN_ONCE void find_coverage([[maybe_unused]] const Call& call,
-                                     [[maybe_unused]] detail::CoverageList& coverage) override {
-#if !defined(LIGHTBIN_NO_COVERAGE)
-        if constexpr (keeps_lights)
-            coverage.template find<spheres_alone ? detail::LightKind::sphere : detail::LightKind::mixed>(
-                call.view, footprints_, call.threads);
-#endif
     }
 
     Projected projected() const override {
@@ -169,9 +156,8 @@ inline Projection* new_projection([[maybe_unused]] const Options& options) {
         if (options.slicing == Slicing::clusters) return new_projection<true, Slicing::clusters>();
     if constexpr (left_out(Options{.slicing = Slicing::z_bins}) == nullptr)
         if (options.slicing == Slicing::z_bins) return new_projection<true, Slicing::z_bins>();
-    if constexpr (has_depth_test || left_out(Options{.coverage = true}) == nullptr)
-        if (options.depth_test || options.coverage)
-            return new_projection<true, Slicing::none>();
+    if constexpr (has_depth_test)
+        if (options.depth_test) return new_projection<true, Slicing::none>();
     return new_projection<false, Slicing::none>();
 }
 
@@ -241,7 +227,6 @@ public:
           projection_(new_projection(options)) {}
 
     const Options& options() const { return options_; }
-    std::span<const LightCoverage> coverage() const { return coverage_.all(); }
 
     template <class Id> Result<LightGrid<Id>> bin(const Call& call) {
         const detail::DefaultFloatEnvironment environment;
@@ -260,15 +245,12 @@ private:
     }
 
     LIGHTBIN_ONCE std::optional<Error> project(const Call& call) {
-        coverage_.clear();
         if (const auto error =
                 detail::refuse(call.lights.all(), options_.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options_.isa);
-        if (const auto error = projection_->project(isa_, call, how_.tested)) return error;
-        if (options_.coverage) projection_->find_coverage(call, coverage_);
-        return {};
+        return projection_->project(isa_, call, how_.tested);
     }
 
     template <class Id> LIGHTBIN_ONCE Result<LightGrid<Id>> build(const Call& call) {
@@ -291,7 +273,6 @@ private:
     std::unique_ptr<Projection> projection_;
     Lists<std::uint32_t> wide_;
     Lists<std::uint16_t> narrow_;
-    detail::CoverageList coverage_;
 };
 
 }  // namespace c

@@ -121,8 +121,6 @@ inline const char* sentence_of(std::int32_t error) {
                "clusters read no bounds, and lights in view space no matrix";
     case LIGHTBIN_BUFFER_TOO_SMALL:
         return "this memory holds {available} elements, and {needed} are needed";
-    case LIGHTBIN_COVERAGE_IS_OFF:
-        return "this binner finds no coverage: make it with the option `coverage`";
     case LIGHTBIN_OTHER_MEMORY:
         return "this grid must be in the memory that the next view's lists are to be copied to, at its "
                "beginning";

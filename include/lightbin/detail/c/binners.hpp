@@ -2,6 +2,7 @@
 // The C side's functions that make lists.
 #pragma once
 
+#include <lightbin/coverage.hpp>
 #include <lightbin/detail/c/any_binner.hpp>
 #include <lightbin/detail/c/views.hpp>
 
@@ -86,6 +87,23 @@ private:
     lightbin_threads threads_;
 };
 
+/// Checks the caller's threads, null for none, and calls body(threads) with them.
+template <class Body>
+lightbin_result with_threads(const lightbin_threads* given, const char* name, const char* name_of_run,
+                             const Body& body) {
+    lightbin_threads threads = {};
+    if (given == nullptr) return guarded([&] { return body(Threads()); });
+    const lightbin_result result = read(given, threads, name);
+    if (result.error != LIGHTBIN_OK) return result;
+    if (threads.run == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name_of_run);
+#if defined(LIGHTBIN_NO_THREADS)
+    return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS");
+#else
+    const CallersThreads run(threads);
+    return guarded([&] { return body(Threads(threads.workers, run)); });
+#endif
+}
+
 /// Checks the arguments of a binner's call and calls body(call) with them.
 template <class Body>
 lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
@@ -107,22 +125,11 @@ lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
     std::optional<ZBounds> given_bounds;
     if (with_bounds) result = read_bounds(inputs.bounds, view->value, given_bounds.emplace());
     const ZBounds& bounds = with_bounds ? *given_bounds : no_bounds;
-    lightbin_threads threads = {};
-    if (result.error == LIGHTBIN_OK && inputs.threads != nullptr) {
-        result = read(inputs.threads, threads, "inputs.threads");
-        if (result.error == LIGHTBIN_OK && threads.run == nullptr)
-            result = refused(LIGHTBIN_NULL_ARGUMENT, "inputs.threads.run");
-    }
     if (result.error != LIGHTBIN_OK) return result;
     const Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
-#if defined(LIGHTBIN_NO_THREADS)
-    if (threads.run != nullptr) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS");
-    return guarded([&] { return body(Call{view->value, lights, slices, bounds, {}}); });
-#else
-    const CallersThreads run(threads);
-    const Threads parallel = threads.run != nullptr ? Threads(threads.workers, run) : Threads();
-    return guarded([&] { return body(Call{view->value, lights, slices, bounds, parallel}); });
-#endif
+    return with_threads(inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
+        return body(Call{view->value, lights, slices, bounds, threads});
+    });
 }
 
 /// Returns the options that a caller asks for.
@@ -137,8 +144,7 @@ inline lightbin_result read_options(const lightbin_binner_options* given, Option
                        static_cast<std::uint64_t>(std::int64_t{known.ids}));
     options = {.ids = known.ids == LIGHTBIN_U16 ? IdWidth::u16 : IdWidth::u32,
                .depth_test = known.depth_test != 0,
-               .slicing = static_cast<Slicing>(known.slicing),
-               .coverage = known.coverage != 0};
+               .slicing = static_cast<Slicing>(known.slicing)};
     result = read_isa(known.isa, options.isa, "options.isa");
     if (result.error != LIGHTBIN_OK) return result;
     const char* const define = left_out(options);
@@ -179,18 +185,30 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
     });
 }
 
-lightbin_result lightbin_binner_coverage(const lightbin_binner* binner, const lightbin_coverage** lights,
-                                         std::size_t* count) {
+#if !defined(LIGHTBIN_NO_COVERAGE)
+lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* given_lights,
+                                  const lightbin_threads* given_threads, lightbin_light_coverage* coverage,
+                                  std::size_t capacity, std::size_t* count) {
     using namespace lightbin::c;
-    static_assert(sizeof(lightbin::LightCoverage) == sizeof(lightbin_coverage));
-    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
-    if (lights == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "lights");
+    static_assert(sizeof(lightbin::LightCoverage) == sizeof(lightbin_light_coverage));
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
     if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
-    if (!binner->value.options().coverage) return refused(LIGHTBIN_COVERAGE_IS_OFF, "binner");
-    const std::span<const lightbin::LightCoverage> all = binner->value.coverage();
-    *lights = reinterpret_cast<const lightbin_coverage*>(all.data());
-    *count = all.size();
-    return succeeded();
+    CallLights lights;
+    const lightbin_result result = read_lights(given_lights, lights);
+    if (result.error != LIGHTBIN_OK) return result;
+    return with_threads(given_threads, "threads", "threads.run", [&](const Threads& threads) {
+        const lightbin::detail::DefaultFloatEnvironment environment;
+        if (const auto error = lightbin::detail::refuse(lights.all())) return refused(*error);
+        lightbin::Footprints<true> footprints;
+        footprints.project(lightbin::machine_isa(), view->value, lights.all(), threads);
+        *count = footprints.visible();
+        if (capacity < *count) return refused(LIGHTBIN_BUFFER_TOO_SMALL, "coverage", *count, capacity);
+        using lightbin::detail::LightKind;
+        lightbin::detail::find_coverage<spheres_alone ? LightKind::sphere : LightKind::mixed>(
+            view->value, footprints, threads, reinterpret_cast<lightbin::LightCoverage*>(coverage));
+        return succeeded();
+    });
 }
+#endif
 
 }  // extern "C"

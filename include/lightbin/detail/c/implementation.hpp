@@ -7,7 +7,7 @@
 //   LIGHTBIN_NO_U16                                                 16-bit ids
 //   LIGHTBIN_NO_DEPTH_TEST                                          lightbin_binner_options::depth_test
 //   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings
-//   LIGHTBIN_NO_COVERAGE                                            lightbin_binner_options::coverage
+//   LIGHTBIN_NO_COVERAGE                                            lightbin_coverage()
 //   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
 //   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads
 //   LIGHTBIN_NO_SHADERS                                             all shader text

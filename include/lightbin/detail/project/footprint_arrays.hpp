@@ -35,7 +35,7 @@ struct FootprintRun {
     std::uint32_t begin, end;
 };
 
-/// All lights in view space. They are complete only if depth tests, slices or coverage read them. Ids number the
+/// All lights in view space. They are complete only if depth tests, slices or coverage() read them. Ids number the
 /// arrays that lights() joined: first all spheres, then all spots, then all boxes.
 struct ViewLights {
     const Sphere* spheres = nullptr;  ///< to be read with load_sphere()

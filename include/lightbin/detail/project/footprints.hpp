@@ -39,7 +39,7 @@ template <class Array> void copy_lights(const void* lights, std::size_t first, s
 
 /// The footprints of the lights in view, in ascending order of id.
 ///
-/// keeps_lights  keep the lights in view space, for depth tests, slices or coverage
+/// keeps_lights  keep the lights in view space, for depth tests, slices or coverage()
 template <bool keeps_lights> class Footprints {
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Finds the LightCoverage of each light in view, its tiles, depths and size in pixels, from its footprint.
+// The sphere around a light in view, its depths, and how many tiles it is wide or high.
 #pragma once
 
-#include <lightbin/coverage.hpp>
 #include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/detail/project/spheres_in_double.hpp>
-#include <lightbin/parallel.hpp>
 #include <lightbin/view.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -72,51 +70,6 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
     }
     return tiles * (1 + 0x1p-50);
 }
-
-/// The LightCoverage of all lights in view, and its memory, which is kept from call to call.
-class CoverageList {
-public:
-    void clear() { count_ = 0; }
-    std::span<const LightCoverage> all() const { return {lights_.data(), count_}; }
-
-    /// Stores the LightCoverage of each light in view: its tiles, its depths and its size in pixels.
-    ///
-    /// footprints  the footprints of the lights, which are of the LightKind `kind`, with the lights in view space
-    template <LightKind kind, class AnyFootprints>
-    void find(const View& view, const AnyFootprints& footprints, const Parallel& parallel) {
-        const std::span<const FootprintRun> runs = footprints.runs();
-        LightCoverage* const lights = lights_.reserve(footprints.visible());
-        parallel.run(runs.size(), [&](std::size_t i) {
-            LightCoverage* to = lights;
-            for (const FootprintRun& run : runs.first(i))
-                to += run.end - run.begin;
-            for (std::uint32_t light = runs[i].begin; light < runs[i].end; ++light)
-                *to++ = coverage_of<kind>(view, footprints.arrays(), light);
-        });
-        count_ = footprints.visible();
-    }
-
-private:
-    template <LightKind kind>
-    static LightCoverage coverage_of(const View& view, const FootprintArrays& from, std::uint32_t i) {
-        const LightExtent extent = extent_of<kind>(camera_of(view), from.view_lights, from.ids[i]);
-        return {from.ids[i],
-                from.x0[i],
-                from.y0[i],
-                from.x1[i],
-                from.y1[i],
-                -next_above(-extent.nearest),
-                next_above(extent.farthest),
-                float_above(tiles_across(camera_of(view), extent.sphere) * view.tile_size() * (1 + 0x1p-50))};
-    }
-
-    /// Returns the next float above a depth that was rounded to nearest, so that the exact depth is less. Returns an
-    /// infinite depth as it is.
-    static float next_above(float depth) { return is_finite(depth) ? -next_below(-depth) : depth; }
-
-    Buffer<LightCoverage> lights_;
-    std::size_t count_ = 0;
-};
 
 }}}  // namespace lightbin::detail
 
