@@ -82,9 +82,9 @@ LIGHTBIN_INLINE const Light* whole_vector(const Light* from, std::uint32_t used,
 
 /// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the
 /// last sphere fills the other lanes.
-template <class Index>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y,
-                         Floats& z, Floats& radius) {
+template <class Index, class Reals>
+void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Reals& x, Reals& y,
+                         Reals& z, Reals& radius) {
     Sphere some[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
         some[i] = load_sphere(spheres + indices[min_of(i, count - 1)]);
