@@ -114,8 +114,8 @@ inline constexpr const char* error_sentences[] = {
     ("{needed} lights are too many for the id type, which counts to {available}: choose a wider type by the option "
      "ids, or use fewer lights"),
     // light grid
-    ("the light index list would need {needed} entries, and 32-bit offsets reach {available}: use larger tiles, "
-     "fewer slices, or Z bounds"),
+    ("the light index list, or masks, would need {needed} entries, and 32-bit offsets reach {available}: use larger "
+     "tiles, fewer slices, or Z bounds"),
     ("the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: use "
      "fewer slices, larger tiles or fewer lights"),
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
