@@ -67,6 +67,7 @@ enum class ErrorCode : std::uint8_t {
     texture_width_out_of_range,
     bindings_overlap,
     not_a_prefix,
+    no_such_mask_shader,
     // light grids made on the GPU
     no_cull_of_boxes,
     too_many_slices,
@@ -163,6 +164,7 @@ inline constexpr const char* error_sentences[] = {
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("the option prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
+    "masks of columns and rows have no clusters, and a shader reads those of one view: use lists for clusters and views",
     // light grids made on the GPU
     "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
     "a grid that is built on the GPU has at most {available} slices, not {given}",
