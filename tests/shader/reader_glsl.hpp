@@ -41,23 +41,25 @@ constexpr int result_binding = 2;  // compute
 /// What is drawn is wider and higher than the viewport by so many pixels, which have no lights.
 constexpr int beyond = 3;
 
-/// The lights that a check goes through: in large pictures few, as it does so in every pixel.
-inline std::uint32_t checked_lights(std::uint32_t width) {
-    return width > 100 ? 8 : 3000;
+/// The lights that a check goes through: in large pictures few, as it does so in every pixel. Masks with z-bins are
+/// searched for each of them, and Mesa's llvmpipe ends a shader's loops after 65,535 rounds.
+inline std::uint32_t checked_lights(const lightbin::ShaderOptions& options, std::uint32_t width) {
+    return width > 100 ? 8 : options.masks ? 100 : 3000;
 }
 
 /// How many lights there are.
 inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) {
     using lightbin::IdWidth;
+    if (options.masks) return 2000;
     return options.format.ids == IdWidth::u8 ? 200 : options.format.ids == IdWidth::u16 ? 50000 : 100000;
 }
 
 /// Lines that loop over a pixel's list. `loop` begins the loop.
-inline std::string reader_loop(const std::string& loop, std::uint32_t width) {
+inline std::string reader_loop(const std::string& loop, std::uint32_t lights) {
     return loop + R"(        hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
-        if (light.id < )" + std::to_string(checked_lights(width)) +
+        if (light.id < )" + std::to_string(lights) +
            "u) { listed += light.id + 1u; }\n    }\n";
 }
 
@@ -67,7 +69,7 @@ constexpr float scale_x = 1.2f, scale_y = 1.7f, view_shift = 0.25f;
 /// Lines that add to `hash` where a check or the window function says what is not so. `grid` is the pixel as the view
 /// counts it. `listed` is the sum of 1 + id of the lights listed.
 inline std::string reader_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
-    const std::string prefix(options.prefix), lights = std::to_string(checked_lights(width)) + "u";
+    const std::string prefix(options.prefix), lights = std::to_string(checked_lights(options, width)) + "u";
     const bool several = options.views > 1;
     const std::string view = several ? ", view)" : ")";
     std::string text;
@@ -98,7 +100,8 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
     if (options.list_check)
         text += "    " + prefix + "for_each_missing(other, " + lights + ", pixel, depth" + view +
                 " listed += other.id + 1u;\n    if (listed != " +
-                std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
+                std::to_string(checked_lights(options, width) * (checked_lights(options, width) + 1) / 2) +
+                "u) hash += 64u;\n";
     if (options.window)
         text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix +
                 "window(0.0, 3.0) != 1.0 || abs(" + prefix +
@@ -149,7 +152,8 @@ inline std::string reader_glsl(const lightbin::ShaderOptions& options, const lig
     highp uint count = 0u;
     highp uint listed = 0u;
 )" +
-            reader_loop("    " + prefix + "for_each_light(light, pixel, depth" + view + ") {\n", width);
+            reader_loop("    " + prefix + "for_each_light(light, pixel, depth" + view + ") {\n",
+                        checked_lights(options, width));
     if (options.heat_map)
         text += "    if (" + prefix + "count(pixel, depth" + view + ") != count || " + prefix +
                 "heat(pixel, depth, 8.0" + view + ").x > 1.0) hash += 1u;\n";

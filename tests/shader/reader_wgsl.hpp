@@ -21,7 +21,7 @@ inline std::string wgsl_depth(const lightbin::ShaderOptions& options) {
 
 /// reader_checks() in WGSL, `$` being the prefix. Within, `@` is the argument for the view, where there are several.
 inline std::string wgsl_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
-    const std::uint32_t lights = checked_lights(width);
+    const std::uint32_t lights = checked_lights(options, width);
     const std::string views = std::to_string(options.views) + "u";
     const bool several = options.views > 1;
     std::string text;
@@ -90,7 +90,8 @@ inline std::string reader_wgsl(const lightbin::ShaderOptions& options, const lig
     var count = 0u;
     var listed = 0u;
 )" +
-        reader_loop("    var light = $begin(" + arguments + "\n    while ($next(&light))" + body, width) +
+        reader_loop("    var light = $begin(" + arguments + "\n    while ($next(&light))" + body,
+                    checked_lights(options, width)) +
         wgsl_checks(options, width) + R"(    let tile = $tile(pixel);
     return vec4u(tile.x + (tile.y << 16u), count, hash, sum);
 }

@@ -6,6 +6,7 @@
 #include "reader_wgsl.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 
 #include <algorithm>
@@ -27,6 +28,7 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     const auto option = [&](bool on, const char* word) {
         if (on) name += std::string(", ") + word;
     };
+    option(options.masks, "masks");
     option(options.packed_ids, "packed");
     option(options.tiles_in_uniform_block, "tiles in a block");
     option(options.push_constants, "push constants");
@@ -70,6 +72,10 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
                         every.push_back(options);
                     }
             }
+        if (options.slicing == Slicing::clusters || options.views > 1) continue;
+        every.push_back(options);
+        every.back().format = {};
+        every.back().masks = true;
     }
     return every;
 }
@@ -133,6 +139,7 @@ inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLang
 inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
     std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
+    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return list.masks; });
     for (std::size_t i = 0; i < every.size(); ++i) {
         every[i].views = 2;
         every[i].wave_loop = waves && i % 2 == 1;
@@ -175,8 +182,8 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
 }
 
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
-/// behind the eye.
-inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
+/// behind the eye. `copies` of each in view are there, with other ids.
+inline std::vector<lightbin::Sphere> reader_lights(std::size_t count, std::size_t copies) {
     std::mt19937 engine(5);
     const auto number = [&](float low, float high) {
         return low + (high - low) * static_cast<float>(engine() >> 8) / 16777216.0f;
@@ -184,8 +191,10 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     std::vector<lightbin::Sphere> lights(count, {0, 0, 5, 1});
     for (std::size_t i = 1; i <= 40; ++i) {
         const float z = -number(2, 20);
-        lights[count * ((i + 1) / 2) / 20 - 1 - i % 2] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
-                                                          number(0.05f, 0.2f) * -z};
+        const std::size_t last = count * ((i + 1) / 2) / 20 - 1 - i % 2;
+        lights[last] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z, number(0.05f, 0.2f) * -z};
+        for (std::size_t copy = 1; copy < copies; ++copy)
+            lights[last - 10 * copy] = lights[last];
     }
     return lights;
 }
@@ -194,7 +203,8 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
 inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
                           const lightbin::ShaderGrid& constants, std::span<const lightbin::ShaderView> views,
                           const lightbin::LightGrid<std::uint32_t>& grid,
-                          std::span<const lightbin::BinRange> bins, std::span<const std::byte> lists) {
+                          std::span<const lightbin::BinRange> bins, std::span<const std::byte> lists,
+                          std::span<const std::uint32_t> masks) {
     const std::string name = binding.name.substr(options.prefix.size());
     Input input;
     input.binding = binding;
@@ -214,6 +224,8 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
         data = std::as_bytes(std::span(slices));
     else if (name.starts_with("bins"))
         data = std::as_bytes(bins);
+    else if (name.starts_with("masks"))
+        data = std::as_bytes(masks);
     if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
     input.bytes.assign(data.begin(), data.end());
     std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
@@ -237,7 +249,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     constexpr Options of_binner = {.slicing = slicing};
     const Slices slices = reader_slices();
     std::vector<Binner<of_binner>> binners(options.views);
-    const std::vector<Sphere> spheres = reader_lights(reader_light_count(options));
+    const std::vector<Sphere> spheres = reader_lights(reader_light_count(options), options.masks ? 8 : 1);
     std::vector<View> views;
     std::vector<ShaderView> view_constants;
     std::vector<LightGrid<std::uint32_t>> grids;
@@ -286,8 +298,12 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
     ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
+    MaskBinner mask_binner;
+    const auto masks = slicing == Slicing::z_bins ? mask_binner.bin(views[0], spheres, slices)
+                                                  : mask_binner.bin(views[0], spheres);
     for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, view_constants, *grid, bins, lists));
+        job.inputs.push_back(reader_input(binding, options, constants, view_constants, *grid, bins, lists,
+                                          masks->words()));
 
     // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
     const std::uint32_t tile_size =
@@ -314,8 +330,10 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
                 if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
                 if (id < bin.least || id > bin.greatest) continue;
-                hash = (hash ^ id) * 16777619u;
-                sum += ++count * id;
+                const std::uint32_t light =
+                    options.masks && slicing == Slicing::z_bins ? grids[view].ranks().order[id] : id;
+                hash = (hash ^ light) * 16777619u;
+                sum += ++count * light;
             }
             for (const std::uint32_t word : {tx + (ty << 16), count, hash, sum})
                 job.expected.push_back(word);
@@ -396,7 +414,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
-        if (!few && list.format.ids == lightbin::IdWidth::u16) add(large);
+        if (!few && (list.masks || list.format.ids == lightbin::IdWidth::u16)) add(large);
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned place = 0;
