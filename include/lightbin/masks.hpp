@@ -130,10 +130,7 @@ private:
                 *to++ = lights.ids[footprint_of(i)];
         while (to < end_of_ids)
             *to++ = 0;
-        for (const BinRange& bin : bins) {
-            *to++ = bin.least;
-            *to++ = bin.greatest;
-        }
+        if (!bins.empty()) std::memcpy(to, bins.data(), bins.size_bytes());
         return LightMasks(view.tiles_x(), view.tiles_y(), {words, static_cast<std::size_t>(size)},
                           footprints.counts(), bins);
     }

@@ -207,11 +207,12 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
         writer.add("        uint words = $masks[0u];\n"
                    "        c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);\n"
                    "        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / " + size + ") * words;\n" +
-                   std::string(!binned ? "        c.end = words;\n" : R"(        uint bin = c.ids + 32u * words + 2u * slice;
+                   std::string(binned ? R"(        uint bin = c.ids + 32u * words + 2u * slice;
         c.bin = uvec2($masks[bin], $masks[bin + 1u]);
         c.at = c.bin.x >> 5u;
         c.end = (c.bin.y >> 5u) + 1u;
-)"));
+)"
+                                      : "        c.end = words;\n"));
     else if (table)
         writer.add("        uvec2 list = " +
                    (textures && !options.tiles_in_uniform_block
@@ -237,20 +238,33 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
 
     // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
     // result that was not set where a function returns early.
-    writer.add("    }\n    return c;\n}\n\nbool $own_next(inout $own_cursor c) {\n");
-    // Without findLSB the exponent of the lowest bit, converted to float, is its index.
-    if (masks)
-        writer.add("    while (c.bits == 0u && c.at < c.end) {\n"
-                   "        c.bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];\n" +
-                   std::string(!binned ? "" : R"(        if (c.at == c.bin.x >> 5u) { c.bits &= 0xffffffffu << (c.bin.x & 31u); }
-        if (c.at == c.bin.y >> 5u) { c.bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }
-)") + R"(        c.at += 1u;
-    }
-    bool more = c.bits != 0u;
+    writer.add("    }\n    return c;\n}\n");
+    // The next light of masks. Without findLSB the exponent of the lowest bit, converted to float, is its index.
+    const std::string next_bit = R"(    bool more = c.bits != 0u;
     if (more) {
-        uint bit = )" + (dialect.storage_buffers ? "uint(findLSB(c.bits))"
-                                                 : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n        c.bits &= c.bits - 1u;\n        c.id = $masks[c.ids + 32u * (c.at - 1u) + bit];\n");
+        uint bit = )" + std::string(dialect.storage_buffers
+                                        ? "uint(findLSB(c.bits))"
+                                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                                 R"(;
+        c.bits &= c.bits - 1u;
+        c.id = $masks[c.ids + 32u * (c.at - 1u) + bit];
+)";
+    // `lights_at` returns the bits of the word that a cursor is at; with z-bins only those of the bin's range.
+    if (masks)
+        writer.add("\nuint $lights_at($own_cursor c) {\n"
+                   "    uint bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];\n" +
+                   std::string(binned ? R"(    if (c.at == c.bin.x >> 5u) { bits &= 0xffffffffu << (c.bin.x & 31u); }
+    if (c.at == c.bin.y >> 5u) { bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }
+)"
+                                      : "") +
+                   "    return bits;\n}\n");
+    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
+    if (masks)
+        writer.add(R"(    while (c.bits == 0u && c.at < c.end) {
+        c.bits = $lights_at(c);
+        c.at += 1u;
+    }
+)" + next_bit);
     else
         writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
                    "        c.at += 1u;\n");
@@ -259,8 +273,53 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (binned && !masks) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
 
-    // The cursor of a wave. The wave's next light is the least id among the next lights of its lanes.
-    if (options.wave_loop)
+    // The cursor of a wave goes with all its lanes through the words that any of them looks at, and through the lights
+    // that any of them has there.
+    if (options.wave_loop && masks)
+        writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    uint at;
+    uint end;
+    uint bits;
+    uint ids;
+    $own_cursor lane;
+};
+
+$cursor $begin)" + of_list + R"(    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    c.bits = 0u;
+    $own_cursor lane = $own_begin)" + list_arguments + R"(;
+    c.lane = lane;
+    uint first = 0xffffffffu;
+    if (lane.at < lane.end) { first = lane.at; }
+    c.at = subgroupMin(first);
+    c.end = subgroupMax(lane.end);
+    c.ids = subgroupMax(lane.ids);
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor lane = c.lane;
+    while (c.bits == 0u && c.at < c.end) {
+        lane.bits = 0u;
+        if (c.at == lane.at && lane.at < lane.end) {
+            lane.bits = $lights_at(lane);
+            lane.at += 1u;
+        }
+        c.bits = subgroupOr(lane.bits);
+        c.at += 1u;
+    }
+    c.lane = lane;
+)" + next_bit + R"(        c.own = ((lane.bits >> bit) & 1u) != 0u;
+    }
+    return more;
+}
+)");
+    // The wave's next light in lists is the least id among the next lights of its lanes.
+    else if (options.wave_loop)
         writer.add(R"(
 struct $cursor {
     uint id;
