@@ -38,8 +38,8 @@ try() {
             g++ $flags -I"$place" tests/shader/cull_twin.cpp -o "$place/proof" 2>"$place/log"
         arguments=1000
         ;;
-    views)
-        g++ $flags tests/unit/views.cpp $work/doctest_main.o -o "$place/proof" 2>"$place/log"
+    views | masks)
+        g++ $flags tests/unit/$proof.cpp $work/doctest_main.o -o "$place/proof" 2>"$place/log"
         arguments=
         ;;
     *)
