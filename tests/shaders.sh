@@ -120,7 +120,7 @@ if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validati
     fi
 fi
 
-if have WebGL g++ chromium; then
+if have WebGL g++ chromium nlohmann-json3-dev; then
     echo "$me: building the writer of the pages for WebGL"
     build g++ webgl/write_jobs.cpp write_webgl_jobs
     run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
@@ -144,7 +144,7 @@ have_npm() {
 dawn=webgpu@0.6.2
 deno=deno@2.9.6
 
-if have WGSL g++ nodejs chromium mesa-vulkan-drivers; then
+if have WGSL g++ nodejs chromium mesa-vulkan-drivers nlohmann-json3-dev; then
     echo "$me: building the writer of the jobs for WebGPU"
     build g++ webgpu/write_jobs.cpp write_wgsl_jobs
     mkdir -p "$out/runtime" && chmod 700 "$out/runtime"

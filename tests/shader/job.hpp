@@ -50,6 +50,15 @@ struct Job {
     }
 };
 
+/// Which share of the work: every count-th job from `first` on. On the command line: its last two numbers.
+struct Share {
+    std::size_t first = 0, count = 1;
+};
+
+inline Share share_of(int count, char** arguments) {
+    return count < 3 ? Share{} : Share{std::stoul(arguments[count - 2]), std::stoul(arguments[count - 1])};
+}
+
 /// What comes before a text.
 inline std::string version_line(lightbin::ShaderLanguage language) {
     constexpr const char* lines[] = {"#version 430 core\n",

@@ -2,8 +2,7 @@
 // Every form of the snippet, and runs of them: what every pixel reads is known.
 #pragma once
 
-#include "reader_glsl.hpp"
-#include "reader_wgsl.hpp"
+#include "reader_text.hpp"
 
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -161,17 +160,6 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
             every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
-}
-
-/// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
-/// ids that depend on their order. With several views the picture has a band of rows for each view, and one more for a
-/// number that no view has; with multiview, a fragment shader in GLSL or HLSL is told its view by the graphics API.
-inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
-                               Stage stage, std::uint32_t width, std::uint32_t height,
-                               bool multiview = false) {
-    return options.language == lightbin::ShaderLanguage::wgsl
-               ? reader_wgsl(options, snippet, stage, width, height)
-               : reader_glsl(options, snippet, stage, width, height, multiview);
 }
 
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
