@@ -38,26 +38,6 @@ bool compiles(const std::string& text, EShLanguage stage, std::string& error) {
     return good;
 }
 
-/// Returns the name of a loop's variable that an HLSL text declares twice, or nothing. Microsoft's compiler for shader
-/// model 5 keeps such a variable to the end of the scope around its loop, warns of a second one (X3078), and may treat
-/// warnings as errors; no other compiler minds. A text may switch this warning off.
-std::string loop_variable_twice(const std::string& text) {
-    static constexpr std::string_view loop = "for (uint ";
-    if (text.find("#pragma warning(disable : 3078)") != text.npos) return {};
-    std::vector<std::set<std::string>> scopes(1);
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '{') scopes.emplace_back();
-        if (text[i] == '}' && scopes.size() > 1) scopes.pop_back();
-        if (text.compare(i, loop.size(), loop) != 0) continue;
-        const std::size_t begin = i + loop.size();
-        const std::string name = text.substr(begin, text.find(' ', begin) - begin);
-        for (const auto& scope : scopes)
-            if (scope.count(name) != 0) return name;
-        scopes.back().insert(name);
-    }
-    return {};
-}
-
 class Compiler {
 public:
     Compiler() {
@@ -75,10 +55,6 @@ public:
 
     bool takes(ShaderLanguage language, EShLanguage stage, const std::string& text) {
         const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
-        if (dialect.hlsl) {
-            error_ = loop_variable_twice(text);
-            if (!error_.empty()) return false;
-        }
         if (dialect.hlsl || dialect.vulkan) {
             ++valid;
             return is_valid(text, stage, dialect.hlsl);

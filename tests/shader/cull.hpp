@@ -65,7 +65,6 @@ struct CulledGrid {
     std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> lists;
     bool narrow = false;
-    std::uint64_t tests = 0;  // of tiles: how often a light was compared with a tile
 
     std::uint32_t id(std::size_t at) const {
         return narrow ? lists[at / 2] >> (at % 2 * 16) & 0xffff : lists[at];
@@ -91,13 +90,6 @@ struct CulledGrid {
         return hash;
     }
 };
-
-/// Changes a text before it is run: by nothing, or to arithmetic as bad as specifications allow.
-using TextChange = std::string (*)(std::string);
-
-inline std::string as_it_is(std::string text) {
-    return text;
-}
 
 inline lightbin::CullPlan plan_of(const CullCase& scene) {
     lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, {scene.count, scene.room},
@@ -128,7 +120,7 @@ inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
 /// Runs passes on a device, one job for each buffer that a pass writes.
 template <class Device>
 void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan& plan,
-                std::span<const lightbin::CullPass> passes, CullBuffers& written, TextChange change) {
+                std::span<const lightbin::CullPass> passes, CullBuffers& written) {
     using namespace lightbin;
     BuilderData data;
     data.put_constants(std::as_bytes(std::span(&plan.constants, 1)), {});
@@ -139,8 +131,7 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     data.put("z_bounds", scene.z_bounds);
     if (scene.slices) data.put("slices", shader_slices(*scene.slices));
     for (const CullPass pass : passes) {
-        ShaderText shader = *cull_shader(pass, scene.options);
-        shader.text = change(std::move(shader.text));
+        const ShaderText shader = *cull_shader(pass, scene.options);
         for (const auto& [name, words] : written)
             data.put(name.c_str(), words);
         for (const ShaderBinding& binding : shader.bindings) {
@@ -156,34 +147,18 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// How often the passes count and fill compare a light with a tile: for each tile, the lights in the masks of its block.
-/// That one operation compares 32 lights makes no difference to the number.
-inline std::uint64_t count_tests(const lightbin::ShaderCull& plan, const std::vector<std::uint32_t>& scratch) {
-    const std::size_t blocks = std::size_t{plan.blocks_x} * plan.blocks_y, words = (plan.lights + 63) / 64 * 2;
-    std::vector<std::uint64_t> lights(blocks);
-    for (std::size_t i = 0; i < words * blocks; ++i)
-        lights[i % blocks] += static_cast<unsigned>(std::popcount(scratch[plan.masks + i]));
-    std::uint64_t tests = 0;
-    for (std::uint32_t y = 0; y < plan.tiles_y; ++y)
-        for (std::uint32_t x = 0; x < plan.tiles_x; ++x)
-            tests += 2 * lights[(y >> plan.block_shift) * plan.blocks_x + (x >> plan.block_shift)];
-    return tests;
-}
-
 /// Runs all passes on a device.
-template <class Device>
-CulledGrid run_cull(Device& device, const CullCase& scene, TextChange change = as_it_is) {
+template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
     CullBuffers written = blank_buffers(plan);
-    run_passes(device, scene, plan, cull_passes, written, change);
+    run_passes(device, scene, plan, cull_passes, written);
     CulledGrid grid;
     grid.narrow = scene.options.ids == IdWidth::u16;
     std::memcpy(&grid.totals, written["scratch"].data(), sizeof grid.totals);
     grid.tiles.resize((written["tiles"].size() - 16) / 2);
     std::memcpy(grid.tiles.data(), written["tiles"].data(), grid.tiles.size() * 8);
     grid.lists = written["lists"];
-    if (scene.options.slicing == Slicing::none) grid.tests = count_tests(plan.constants, written["scratch"]);
     return grid;
 }
 

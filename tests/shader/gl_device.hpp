@@ -16,17 +16,6 @@
 #include <string>
 #include <vector>
 
-constexpr bool is_gl(lightbin::TexelFormat format, GLenum internal, GLenum layout, GLenum type) {
-    const lightbin::GlFormat gl = lightbin::gl_format(format);
-    return gl.internal == internal && gl.layout == layout && gl.type == type;
-}
-static_assert(is_gl(lightbin::TexelFormat::none, GL_NONE, GL_NONE, GL_NONE));
-static_assert(is_gl(lightbin::TexelFormat::r8ui, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE));
-static_assert(is_gl(lightbin::TexelFormat::r16ui, GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT));
-static_assert(is_gl(lightbin::TexelFormat::r32ui, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT));
-static_assert(is_gl(lightbin::TexelFormat::rg32ui, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT));
-static_assert(is_gl(lightbin::TexelFormat::r32f, GL_R32F, GL_RED, GL_FLOAT));
-
 class GlDevice {
 public:
     /// glsl  330, 430, or ES: 300, 310
@@ -143,11 +132,6 @@ private:
             fill(GL_TEXTURE_BUFFER);
             glBindTexture(GL_TEXTURE_BUFFER, textures.back());
             glTexBuffer(GL_TEXTURE_BUFFER, form.internal, buffers.back());
-        } else if (input.samples > 1) {
-            fill_samples(input, textures.back());
-            glUseProgram(program);
-            glActiveTexture(GL_TEXTURE0 + slot);
-            glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, textures.back());
         } else {
             glBindTexture(GL_TEXTURE_2D, textures.back());
             glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -157,46 +141,6 @@ private:
                          form.layout, form.type, input.bytes.data());
         }
         if (glsl_ == 330 || glsl_ == 300) glUniform1i(place, static_cast<GLint>(slot));
-    }
-
-    /// Makes a multisample texture of floats: each sample is drawn from a buffer of them.
-    void fill_samples(const Input& input, GLuint texture) const {
-        const bool es = glsl_ < 330;
-        const std::string version =
-            es ? "#version 320 es\nprecision highp float;\nprecision highp int;\n" : "#version 400 core\n";
-        const GLuint program = link_program(version + full_triangle, version + R"(
-uniform highp usamplerBuffer samples;
-uniform int width;
-uniform int count;
-out float depth;
-void main() {
-    int pixel = int(gl_FragCoord.y) * width + int(gl_FragCoord.x);
-    depth = uintBitsToFloat(texelFetch(samples, pixel * count + gl_SampleID).x);
-}
-)");
-        glUseProgram(program);
-        const auto width = static_cast<GLsizei>(input.width), height = static_cast<GLsizei>(input.height);
-        glUniform1i(glGetUniformLocation(program, "width"), width);
-        glUniform1i(glGetUniformLocation(program, "count"), static_cast<GLint>(input.samples));
-        glUniform1i(glGetUniformLocation(program, "samples"), 14);
-        GLuint buffer = 0, values = 0;
-        glGenBuffers(1, &buffer);
-        glGenTextures(1, &values);
-        glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(input.bytes.size()), input.bytes.data(),
-                     GL_STATIC_DRAW);
-        glActiveTexture(GL_TEXTURE14);
-        glBindTexture(GL_TEXTURE_BUFFER, values);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffer);
-        glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
-        glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, static_cast<GLsizei>(input.samples), GL_R32F,
-                                  width, height, GL_TRUE);
-        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE, texture, 0);
-        glViewport(0, 0, width, height);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glDeleteTextures(1, &values);
-        glDeleteBuffers(1, &buffer);
-        glDeleteProgram(program);
     }
 
     static constexpr const char* full_triangle = R"(

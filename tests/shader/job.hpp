@@ -37,7 +37,7 @@ struct Job {
     std::uint32_t views = 1;  // fragment: drawn by multiview, if more than 1; each is a layer of the picture
     std::vector<std::uint32_t>
         expected;  // fragment: 4 words a pixel, rows as the shader counts them, view by view
-    std::vector<FloatRange> within;       // where not empty: the words are floats in these ranges
+    std::vector<FloatRange> within;  // where not empty: the words are floats in these ranges
 
     bool accepts(const std::vector<std::uint32_t>& words) const {
         if (within.empty()) return words == expected;

@@ -19,28 +19,6 @@ struct ScreenSize {
     int width, height, tile_size;
 };
 
-inline std::string name_of(const lightbin::ShaderOptions& options) {
-    std::string name = std::string(to_string(options.language)) + " " + to_string(options.storage) + " " +
-                       to_string(options.format.encoding) + " " +
-                       std::to_string(8 * static_cast<int>(options.format.ids)) + " bits";
-    const auto option = [&](bool on, const char* word) {
-        if (on) name += std::string(", ") + word;
-    };
-    option(options.packed_ids, "packed");
-    option(options.tiles_in_uniform_block, "tiles in a block");
-    option(options.push_constants, "push constants");
-    option(options.tile_size != 0, "constant tile size");
-    option(options.flip_y, "flipped");
-    option(options.viewport_corner, "corner");
-    option(options.heat_map, "heat map");
-    option(options.slicing != lightbin::Slicing::none, to_string(options.slicing));
-    option(options.wave_loop, "wave loop");
-    option(options.view_check, "view check");
-    option(options.list_check, "list check");
-    option(options.views > 1, "two views");
-    return name;
-}
-
 /// Every place and writing of the lists that a language has; the other options are as given.
 inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions options) {
     using namespace lightbin;
@@ -117,25 +95,24 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     return every;
 }
 
-/// The same with wave loops, if the language has them.
+/// The lists with wave loops, if the language has them.
 inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLanguage language,
                                                             lightbin::Slicing slicing) {
-    std::vector<lightbin::ShaderOptions> every;
-    for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+    std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
+    for (lightbin::ShaderOptions& list : every)
         list.wave_loop = true;
-        if (shader_snippet(list)) every.push_back(list);
-    }
+    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return !shader_snippet(list); });
     return every;
 }
 
-/// The same with two views; with waves every second one has wave loops, if the language has them.
+/// The lists with two views; with waves every second one has wave loops, if the language has them.
 inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
     std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
     for (std::size_t i = 0; i < every.size(); ++i) {
         every[i].views = 2;
         every[i].wave_loop = waves && i % 2 == 1;
-        if (!shader_snippet(every[i])) every[i].wave_loop = false;
+        every[i].wave_loop = every[i].wave_loop && shader_snippet(every[i]);
     }
     return every;
 }
@@ -254,9 +231,9 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         grid = grids[i].copy_to(all_ranges, all_ids, *grid);
     std::vector<std::byte> lists(encoded_bytes(options.format, cells, entries));
     Job job;
-    job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
-               std::to_string(screen.width) + "x" + std::to_string(screen.height) + ", tile " +
-               std::to_string(screen.tile_size);
+    job.name = to_string(options.language) + std::string(" ") + to_string(options.storage) +
+               (stage == Stage::compute ? ", compute, " : ", fragment, ") + std::to_string(screen.width) +
+               "x" + std::to_string(screen.height) + ", tile " + std::to_string(screen.tile_size);
     if (options.tile_size != 0) options.tile_size = screen.tile_size;
     options.max_tiles = static_cast<std::uint32_t>(grid->ranges().size());
     options.max_entries = static_cast<std::uint32_t>(grid->ids().size()) + 1;  // 0 would be unknown

@@ -17,14 +17,16 @@ struct Tally {
     /// Does something with a job, `what` returning whether the result is right.
     template <class What> void count(const Job& job, const What& what) {
         ++jobs;
+        std::string problem = "is wrong";
         try {
             if (what()) return;
-            std::printf("%s is wrong\n", job.name.c_str());
             ++wrong;
         } catch (const std::runtime_error& error) {
-            if (++refused <= 3)
-                std::printf("%s is refused: %s\n%s\n", job.name.c_str(), error.what(), job.text.c_str());
+            problem = std::string("is refused: ") + error.what();
+            ++refused;
         }
+        if (refused + wrong <= 3)
+            std::printf("%s %s\n%s\n", job.name.c_str(), problem.c_str(), job.text.c_str());
     }
     template <class Device> void run(Device& device, const Job& job) {
         count(job, [&] { return job.accepts(device.run(job)); });

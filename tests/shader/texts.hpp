@@ -25,7 +25,7 @@ inline Job text_job(std::string name, lightbin::ShaderLanguage language, Stage s
 inline Job reader_text_job(const lightbin::ShaderOptions& options, Stage stage) {
     lightbin::ShaderText shader = *shader_snippet(options);
     shader.text = reader_text(options, shader, stage, 99, 99);
-    return text_job(name_of(options), options.language, stage, std::move(shader));
+    return text_job("a snippet", options.language, stage, std::move(shader));
 }
 
 inline Job reduction_text_job(const lightbin::ReduceShaderOptions& options) {

@@ -18,13 +18,6 @@
 #include <string>
 #include <vector>
 
-static_assert(lightbin::vk_format(lightbin::TexelFormat::none) == VK_FORMAT_UNDEFINED);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r8ui) == VK_FORMAT_R8_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r16ui) == VK_FORMAT_R16_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r32ui) == VK_FORMAT_R32_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::rg32ui) == VK_FORMAT_R32G32_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r32f) == VK_FORMAT_R32_SFLOAT);
-
 class VulkanDevice {
 public:
     VulkanDevice() {
