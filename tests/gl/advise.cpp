@@ -28,33 +28,7 @@ namespace {
 
 const std::string fixtures = LIGHTBIN_FIXTURES;
 
-Scene of_triangles(const std::vector<glm::vec3>& corners) {
-    Scene scene;
-    for (const glm::vec3& corner : corners)
-        scene.triangles.push_back({corner, {}, {}});
-    return scene;
-}
-
-// A square in front of the eye, which looks down -z.
-std::vector<glm::vec3> square(float depth, float half_side) {
-    const float s = half_side, z = -depth;
-    return {{-s, -s, z}, {s, -s, z}, {s, s, z}, {-s, -s, z}, {s, s, z}, {-s, s, z}};
-}
-
 }  // namespace
-
-TEST_CASE("overdraw counts what is drawn over") {
-    const glm::dmat4 projection = glm::perspectiveRH_NO(1.0, 1.0, 0.1, 100.0);
-    const auto overdraw = [&](std::vector<glm::vec3> first, const std::vector<glm::vec3>& second) {
-        first.insert(first.end(), second.begin(), second.end());
-        return draw_depth_on_cpu(of_triangles(first), projection, {33, 33}).overdraw;
-    };
-    CHECK(overdraw(square(5, 9), {}) == 1);
-    CHECK(overdraw(square(5, 9), square(9, 20)) == 1);
-    CHECK(overdraw(square(9, 20), square(5, 9)) == 2);
-    CHECK(overdraw(square(200, 500), {}) == 1);  // beyond the far plane
-    CHECK(overdraw({}, {}) == 1);
-}
 
 TEST_CASE("evaluations are those that the renderer counts of the picture that it draws") {
     struct Seen {

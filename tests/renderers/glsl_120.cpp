@@ -41,40 +41,29 @@ std::vector<std::string> files_in(const char* page) {
     return files;
 }
 
-/// `text` with `inserted` after its first line, which is its version.
-std::string below_version(const std::string& text, const std::string& inserted) {
-    return std::string(text).insert(text.find('\n') + 1, inserted);
-}
-
-std::string with(std::string text, const std::string& part, const std::string& other) {
-    const std::size_t at = text.find(part);
-    if (at == std::string::npos) fail("there is no '" + part + "' in\n" + text);
-    return text.replace(at, part.size(), other);
+/// `text` with `other` in place of its first line, which is its version.
+std::string with_first_line(const std::string& text, const std::string& other) {
+    return other + text.substr(text.find('\n') + 1);
 }
 
 GLuint link(const std::string& vertex, const std::vector<std::string>& fragments) {
     const GLuint program = glCreateProgram();
+    char log[1000] = "";
     const auto attach = [&](GLenum stage, const std::string& text) {
         const GLuint shader = glCreateShader(stage);
         const char* begin = text.c_str();
         glShaderSource(shader, 1, &begin, nullptr);
         glCompileShader(shader);
-        GLint ok = 0;
-        glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-        char log[1000] = "";
         glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-        if (!ok) fail(log + text);
+        if (log[0] != '\0') fail(log + text);
         glAttachShader(program, shader);
     };
     attach(GL_VERTEX_SHADER, vertex);
     for (const std::string& fragment : fragments)
         attach(GL_FRAGMENT_SHADER, fragment);
     glLinkProgram(program);
-    GLint ok = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &ok);
-    char log[1000] = "";
     glGetProgramInfoLog(program, sizeof log, nullptr, log);
-    if (!ok) fail(log);
+    if (log[0] != '\0') fail(log);
     return program;
 }
 
@@ -143,10 +132,10 @@ int main(int, char** words) {
     const auto snippet = lightbin::shader_snippet(
         {.language = lightbin::ShaderLanguage::glsl_330, .storage = lightbin::ListStorage::texel_buffer});
     const std::string &vertex = files[0], &engine = files[1],
-                      look_up = below_version(files[2], snippet->text);
+                      look_up = with_first_line(files[2], "#version 330 compatibility\n" + snippet->text);
     const GLuint three_files = link(vertex, {engine, look_up});
     // The look-up's own lines stand before the engine's, whose version is now 3.30.
-    const GLuint two_files = link(vertex, {look_up + with(engine, "#version 120\n", "")});
+    const GLuint two_files = link(vertex, {look_up + with_first_line(engine, "")});
     const auto every = [&](int count) {
         const std::string loop =
             "for (int i = 0; i < " + std::to_string(count) + "; ++i) sum += shade(float(i));";
