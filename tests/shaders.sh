@@ -1,9 +1,9 @@
 #!/bin/sh
-# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as
-# root or with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them. Vulkan
-# under its validation layer, WebGL 2 in a browser, WebGPU by its two implementations (Chromium's Dawn and Firefox's
-# wgpu, with their compilers Tint and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine. Installs what
-# is missing; what can't be had is skipped, and the summary says so. Takes about half an hour.
+# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as root or
+# with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them. Vulkan under its
+# validation layer, WebGPU by its two implementations (Chromium's Dawn and Firefox's wgpu, with their compilers Tint
+# and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine. Installs what is missing; what can't be had
+# is skipped, and the summary says so. Takes about half an hour.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -118,12 +118,6 @@ if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validati
         run "Vulkan multiview" env HOME="$out" XDG_RUNTIME_DIR="$out/runtime" \
             VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json "$out/run_vulkan" multiview
     fi
-fi
-
-if have WebGL g++ chromium nlohmann-json3-dev; then
-    echo "$me: building the writer of the pages for WebGL"
-    build g++ webgl/write_jobs.cpp write_webgl_jobs
-    run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
 fi
 
 # have_npm PART PACKAGE: whether an npm package could be put into build/shaders/npm/PACKAGE. Debian's npm is installed

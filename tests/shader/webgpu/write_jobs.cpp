@@ -3,7 +3,6 @@
 // for, to compare the light grids that several passes make. Lines that are not JSON are for people.
 // write_jobs [FIRST COUNT]: takes a share of them.
 #include "../cull_cases.hpp"
-#include "../job_json.hpp"
 #include "../texts.hpp"
 #include "piped_device.hpp"
 
