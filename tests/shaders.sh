@@ -123,14 +123,10 @@ fi
 # have_npm PART PACKAGE: whether an npm package could be put into build/shaders/npm/PACKAGE. Debian's npm is installed
 # only where there is none.
 have_npm() {
-    part=$1 package=$2
+    part=$1
     command -v npm >/dev/null || have "$part" npm || return 1
-    mkdir -p "$out/npm/$package"
-    # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    npm install --prefix "$out/npm/$package" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit \
-        --no-fund "$package" >"$out/npm.log" 2>&1 && return
-    note "$part" "SKIPPED, as npm could not install $package:" \
-        "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
+    (fetch_npm "$out/npm/$2" "$2") && return
+    note "$part" "SKIPPED, as npm could not install $2"
     return 1
 }
 

@@ -319,34 +319,6 @@ TEST_CASE("evaluations without a pre-pass, and a light at a time") {
     CHECK(counted(light_indexed(8)) == counted(tiled_forward_pre_z(ZEnds::both, Reduction::gpu)));
 }
 
-TEST_CASE("what this OpenGL lacks is named") {
-    const Scene scene = make_scene(300);
-    const OffscreenContext context(0);
-    Stage stage(scene, context.glsl());
-    Settings settings = small_frame(1);
-    CHECK_THROWS_WITH_AS(draw(stage, light_indexed(8), scene.cameras[0], settings),
-                         doctest::Contains("number 255 lights, and 300 are"), std::runtime_error);
-    settings.tile_size = 64;
-    CHECK_THROWS_WITH_AS(draw(stage, tiled_deferred_kernel(32), scene.cameras[0], settings),
-                         doctest::Contains("a thread a pixel"), std::runtime_error);
-    settings.tile_size = 8;
-    const Scene many = make_scene(20000);
-    Stage stage_of_many(many, context.glsl());
-    CHECK_THROWS_WITH_AS(draw(stage_of_many, tiled_deferred_planes(32), many.cameras[0], settings),
-                         doctest::Contains("and 20000 are in the scene"), std::runtime_error);
-    settings.width = 30000;
-    CHECK_THROWS_WITH_AS(draw(stage, tiled_forward(), scene.cameras[0], settings),
-                         doctest::Contains("no target of 30000 x 77 pixels"), std::runtime_error);
-
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    const std::size_t bytes = 2 * static_cast<std::size_t>(most);
-    stage.memory.read_texels(unit_lists, GL_R16UI, stage.memory.buffer("lists", bytes, nullptr));
-    const GLuint larger = stage.memory.buffer("lists", bytes + 2, nullptr);
-    CHECK_THROWS_WITH_AS(stage.memory.read_texels(unit_lists, GL_R16UI, larger),
-                         doctest::Contains("this OpenGL reads at most"), std::runtime_error);
-}
-
 TEST_CASE("a view that cannot be drawn is left out, and no more") {
     Scene many = make_scene(65001);
     many.boxes.clear();

@@ -2,6 +2,7 @@
 // Every form of the snippet, and runs of them: what every pixel reads is known.
 #pragma once
 
+#include "builders.hpp"
 #include "reader_text.hpp"
 
 #include <lightbin/lightbin.hpp>
@@ -155,41 +156,12 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     return lights;
 }
 
-/// The bytes of what a snippet binds.
-inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
-                          const lightbin::ShaderGrid& constants, std::span<const lightbin::ShaderView> views,
-                          const lightbin::LightGrid<std::uint32_t>& grid,
-                          std::span<const lightbin::BinRange> bins, std::span<const std::byte> lists) {
-    const std::string name = binding.name.substr(options.prefix.size());
-    Input input;
-    input.binding = binding;
-    const std::vector<std::uint32_t> slices = lightbin::shader_slices(reader_slices());
-    std::span<const std::byte> data = lists;
-    if (name.starts_with("grid"))
-        data = std::as_bytes(std::span(&constants, 1));
-    else if (name.starts_with("corner"))
-        data = std::as_bytes(std::span(&constants.corner_x, 2));
-    else if (name == "depths")
-        data = std::as_bytes(std::span(&views[0].forward, 4));
-    else if (name.starts_with("image"))
-        data = std::as_bytes(views);
-    else if (name.starts_with("tiles"))
-        data = std::as_bytes(grid.ranges());
-    else if (name.starts_with("slices"))
-        data = std::as_bytes(std::span(slices));
-    else if (name.starts_with("bins"))
-        data = std::as_bytes(bins);
-    if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
-    input.bytes.assign(data.begin(), data.end());
-    std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
-    if (binding.resource == lightbin::ShaderResource::texture_2d) {
-        input.width = binding.width ? binding.width : static_cast<std::uint32_t>(grid.tiles_x());
-        const std::size_t row = std::size_t{input.width} * binding.stride;
-        input.height = static_cast<std::uint32_t>((size + row - 1) / row);
-        size = row * input.height;
-    }
-    input.bytes.resize(size, std::byte{0xee});
-    return input;
+/// Gives a texture whole rows: so many texels each as the text has it, or as the grid has columns of tiles.
+inline void fit_texture(Input& input, int tiles_x) {
+    input.width = input.binding.width ? input.binding.width : static_cast<std::uint32_t>(tiles_x);
+    const std::size_t row = std::size_t{input.width} * input.binding.stride;
+    input.height = static_cast<std::uint32_t>((input.bytes.size() + row - 1) / row);
+    input.bytes.resize(row * input.height, std::byte{0xee});
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
@@ -251,8 +223,19 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
     ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
-    for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, view_constants, *grid, bins, lists));
+    BuilderData data;
+    data.put("grid", std::span(&constants, 1));
+    data.put("corner", std::span(&constants.corner_x, 2));
+    data.put("image", view_constants);
+    data.put("depths", std::span(&view_constants[0].forward, 4));
+    data.put("tiles", grid->ranges());
+    data.put("lists", lists);
+    data.put("slices", shader_slices(slices));
+    data.put("bins", bins);
+    for (const ShaderBinding& binding : snippet->bindings) {
+        job.inputs.push_back(data.input(binding, options.prefix));
+        if (binding.resource == ShaderResource::texture_2d) fit_texture(job.inputs.back(), grid->tiles_x());
+    }
 
     // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
     const std::uint32_t tile_size =
