@@ -3,7 +3,6 @@
 #include <advise_scene.hpp>
 #include <binned_lights.hpp>
 #include <cpu_depth.hpp>
-#include <draw_times.hpp>
 #include <gl_context.hpp>
 #include <projection.hpp>
 #include <renderer.hpp>
@@ -134,22 +133,4 @@ TEST_CASE("overdraw is that of the fragments that OpenGL shades without a pre-pa
         draw_depth_on_cpu(scene, glm::dmat4(projection) * glm::inverse(camera.to_world), {320, 200}).overdraw;
     CHECK(overdraw > 1.02);
     CHECK(std::fabs(without / seen / overdraw - 1) < 0.02);
-}
-
-TEST_CASE("OpenGL's times are there, and none is negative") {
-    const Scene scene = load_glb(fixtures + "/darkness.glb", 0.05f);
-    for (const int glsl : {430, 300}) {
-        const DrawTimes times = draw_times(scene, scene.cameras[0], 96, 64, glsl);
-        CHECK(!times.renderer.empty());
-        CHECK(times.glsl == glsl);
-        for (const double ns : {times.evaluation_ns, times.depth_pass_ns, times.read_back_ns,
-                                times.gpu_reduction_ns, times.upload_byte_ns}) {
-            CHECK(ns >= 0);
-            CHECK(std::isfinite(ns));
-        }
-    }
-    Scene dark = scene;  // of the lights none can be told from the clock's noise: no division by nothing
-    dark.lights.resize(1);
-    dark.lights[0].position = glm::vec3(1e6f);
-    CHECK(draw_times(dark, dark.cameras[0], 16, 16, 430).evaluation_ns == 0);
 }

@@ -139,32 +139,30 @@ TEST_CASE("a light that is missing is seen") {
 }
 
 TEST_CASE("three shaders, and panes") {
-    Scene scene = make_scene(250);
-    scene = with_panes(scene, 40);
+    const Scene scene = with_panes(make_scene(250), 40);
+    const RunSettings run{.width = 131, .height = 77, .tile_size = 13, .timed_frames = 0};
     const OffscreenContext context(0);
-    Stage stage(scene, context.glsl());
-    Settings settings = small_frame(1);
-    const Camera& camera = scene.cameras[0];
-    const Bytes plain = draw(stage, forward_every_light(), camera, settings);
-
-    settings.three_shaders = true;
-    const Bytes three = draw(stage, forward_every_light(), camera, settings);
-    CHECK(compare(plain, three).share > 0.05);
-    for (const Technique& technique : every_technique()) {
-        if (technique.name.starts_with("Deferred")) continue;  // a light at a time has one shader
-        CAPTURE(technique.name);
-        CHECK(compare(three, draw(stage, technique, camera, settings)).largest <= technique.tolerance);
-    }
-
-    settings.three_shaders = false;
-    settings.transparent = true;
-    const Bytes panes = draw(stage, forward_every_light(), camera, settings);
-    CHECK(compare(plain, panes).share > 0.005);
+    LeftOut left_out;
+    Runner runner(scene, run, context.glsl(), left_out);
+    runner.run("", scene.cameras[0], {}, {});
+    const Bytes plain = runner.reference();
+    std::vector<Technique> forward = every_technique();
+    std::erase_if(forward, [](const Technique& technique) {
+        return technique.name.starts_with("Deferred");  // a light at a time has one shader
+    });
     using enum TransparentLists;
-    for (const TransparentLists lists : {max_only, shared, own_min}) {
-        const Technique technique = transparent_forward(lists);
-        CAPTURE(technique.name);
-        CHECK(compare(panes, draw(stage, technique, camera, settings)).largest == 0);
+    const std::vector<Technique> panes = {transparent_forward(max_only), transparent_forward(shared),
+                                          transparent_forward(own_min)};
+    for (const bool transparent : {false, true}) {
+        const std::vector<Technique>& techniques = transparent ? panes : forward;
+        Settings settings;
+        settings.transparent = transparent;
+        settings.three_shaders = !transparent;
+        const std::vector<Row> rows = runner.run("", scene.cameras[0], techniques, settings);
+        CHECK(rows.size() == techniques.size() + 1);
+        for (const Row& row : rows)
+            CHECK_MESSAGE(row.as_stated, row.technique);
+        CHECK(compare(plain, runner.reference()).share > 0.005);
     }
 }
 
@@ -260,88 +258,4 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(marked >= reached);
     CHECK(marked <= nearly_reached);
     CHECK(reached > pixels);
-}
-
-// One surface, so that nothing is lit and then hidden.
-TEST_CASE("evaluations without a pre-pass, and a light at a time") {
-    Scene scene = make_scene(250);
-    scene.triangles.resize(6);
-    const OffscreenContext context(0);
-    Stage stage(scene, context.glsl());
-    Settings settings = small_frame(1);
-    settings.count = true;
-    settings.wide = true;
-    const Camera& camera = scene.cameras[1];
-    const std::vector<float> depths = draw_depths(stage, camera, settings);
-
-    using lightbin::Slicing;
-    const lightbin::View view = stage.view();
-    const float reach = depth_of_lights(stage);
-    const auto slices = value_of(lightbin::Slices::exponential(24, reach / 40, reach));
-    const auto fine_slices = value_of(lightbin::Slices::linear(1024, 0, reach));
-    lightbin::Binner binner;
-    lightbin::Binner<lightbin::Options{.depth_test = true, .slicing = Slicing::clusters}> cluster_binner;
-    lightbin::Binner<lightbin::Options{.slicing = Slicing::z_bins}> bin_binner;
-    const auto tiles = value_of(binner.bin(view, stage.lights()));
-    const auto clusters = value_of(cluster_binner.bin(view, stage.lights(), {.slices = slices}));
-    const auto bins = value_of(bin_binner.bin(view, stage.lights(), {.slices = fine_slices}));
-    const auto rectangles = stage.footprints(1);
-    std::uint64_t of_tiles = 0, of_clusters = 0, of_bins = 0, of_rectangles = 0;
-    for (int y = 0; y < settings.height; ++y)
-        for (int x = 0; x < settings.width; ++x) {
-            const auto window = static_cast<double>(depths[static_cast<std::size_t>(y * settings.width + x)]);
-            if (window == 1) continue;
-            const float depth = view.view_depths(window, window).min;
-            const int column = x / settings.tile_size, row = y / settings.tile_size;
-            of_tiles += tiles.lights_in(column, row).size();
-            of_clusters += clusters.lights_in(column, row, slices.slice_at(depth)).size();
-            const auto bin = bins.ranks().bins[static_cast<std::size_t>(fine_slices.slice_at(depth))];
-            of_bins += lightbin::lights_of_bin(bins.lights_in(column, row), bin).size();
-            of_rectangles +=
-                static_cast<std::uint64_t>(std::ranges::count_if(rectangles, [&](const LightFootprint& f) {
-                    return x >= f.x0 && x <= f.x1 && y >= f.y0 && y <= f.y1;
-                }));
-        }
-    const auto counted = [&](const Technique& technique) {
-        draw(stage, technique, camera, settings);
-        return stage.evaluations();
-    };
-    const auto is_close = [](std::uint64_t a, std::uint64_t b) {
-        return a <= b + b / 500 && b <= a + b / 500;
-    };
-    CHECK(counted(tiled_forward()) == of_tiles);
-    CHECK(counted(deferred(32)) == of_rectangles);
-    CHECK(is_close(counted(clustered_forward()), of_clusters));  // but for roundings at slices' ends
-    CHECK(is_close(counted(z_binned_forward()), of_bins));
-    CHECK(of_clusters > 1000);
-    CHECK(of_clusters < of_bins);
-    CHECK(of_bins < of_tiles);
-    CHECK(counted(light_indexed(8)) == counted(tiled_forward_pre_z(ZEnds::both, Reduction::gpu)));
-}
-
-TEST_CASE("a view that cannot be drawn is left out, and no more") {
-    Scene many = make_scene(65001);
-    many.boxes.clear();
-    Scene endless = many;
-    for (Light& light : endless.lights)
-        light.range = std::numeric_limits<float>::infinity();
-    const OffscreenContext context(0);
-    const RunSettings run{.width = 16, .height = 9, .tile_size = 8, .timed_frames = 1};
-    for (const Scene& scene : {many, endless}) {
-        LeftOut left_out;
-        Runner runner(scene, run, context.glsl(), left_out);
-        CHECK(runner.run("", scene.cameras[0], {tiled_forward()}, {}).empty());
-        REQUIRE(left_out.lines().size() == 1);
-        CHECK(left_out.lines()[0].find(" is left out: a fragment would loop over 65001 lights") !=
-              std::string::npos);
-    }
-    many.lights.resize(10);
-    many.cameras[0].orthographic = true;
-    LeftOut left_out;
-    Runner runner(many, run, context.glsl(), left_out);
-    CHECK(runner.run("", many.cameras[0], {tiled_forward()}, {}).empty());
-    CHECK(left_out.lines() == std::vector<std::string>{
-                                  "every technique is left out: frames of orthographic cameras are not drawn "
-                                  "here"});
-    CHECK(runner.run("", many.cameras[1], {tiled_forward()}, {}).size() == 2);
 }

@@ -42,7 +42,7 @@ inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::Shad
                     options.flip_y = switches & 8;
                     options.viewport_corner = switches & 16;
                     options.push_constants = switches & 32;
-                    if (switches & 1) options.prefix = "my_";
+                    options.prefix = prefixes[switches % std::size(prefixes)];
                     if (reduce_shader(options)) every.push_back(options);
                 }
     return every;
@@ -125,7 +125,6 @@ inline Job builder_job(const lightbin::ShaderText& shader, lightbin::ShaderLangu
 struct BuiltLists {
     std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> ids;
-    int slices = 1;
 
     std::span<const std::uint32_t> of(std::size_t tile) const {
         return std::span(ids).subspan(tiles[tile].offset, tiles[tile].count);

@@ -119,39 +119,22 @@ void compile_language(Compiler& compiler, ShaderLanguage language, std::set<std:
     });
 }
 
-/// A text of each generator for a language, with the same prefix; none where the prefix is refused.
-std::vector<Job> prefixed_texts(ShaderLanguage language, std::string_view prefix) {
-    lightbin::ShaderOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
-    lightbin::ReduceShaderOptions reduction = every_reduction(language)[0];
-    options.prefix = reduction.prefix = prefix;
-    if (!shader_snippet(options)) return {};
-    std::vector<Job> jobs = {reader_text_job(options, Stage::fragment), reduction_text_job(reduction)};
-    for (CullText text : every_cull(language))
-        if (text.options.kind == lightbin::CullKind::spot && jobs.size() < 8) {
-            text.options.prefix = prefix;
-            jobs.push_back(cull_text_job(text));
-        }
-    return jobs;
-}
-
-/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts.
+/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts, whose prefixes
+/// are as `prefixes` has them.
 std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
                                 const std::set<std::string>& names, const std::vector<std::string>& words) {
-    // What is taken compiles.
-    for (const std::string& prefix :
-         {std::string("vol"), std::string("volat"), std::string("Vola"), std::string("vola_"),
-          std::string("ext"), std::string("gl"), std::string("GL"), std::string("Gl_"), std::string("x9"),
-          std::string("a_"), std::string(1000, 'a')}) {
-        const std::vector<Job> jobs = prefixed_texts(language, prefix);
-        if (jobs.empty()) return prefix + " is refused as a prefix";
-        for (const Job& job : jobs)
-            if (language != ShaderLanguage::wgsl) compiler.compile(language, stage_of(job), job.text);
-    }
-    // What is refused would not, here in OpenGL ES.
+    lightbin::ShaderOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
+    const std::string longest(1000, 'a');
+    options.prefix = longest;
+    if (language != ShaderLanguage::wgsl)
+        compiler.compile(language, EShLangFragment, reader_text_job(options, Stage::fragment).text);
+    // What is refused would not compile, here in OpenGL ES.
+    options = with_switches(every_list(ShaderLanguage::essl_300, lightbin::Slicing::clusters)[0], 8);
+    options.prefix = "zzq_";
+    const std::string text = reader_text_job(options, Stage::fragment).text;
     for (const std::string& prefix : {std::string("vola"), std::string("GL_"), std::string("gl_a"),
                                       std::string("9"), std::string(1020, 'a')}) {
-        if (!prefixed_texts(language, prefix).empty()) return prefix + " is taken as a prefix";
-        const std::string text = prefixed_texts(ShaderLanguage::essl_300, "zzq_")[0].text;
+        if (lightbin::shader_snippet({.prefix = prefix})) return prefix + " is taken as a prefix";
         if (compiler.takes(ShaderLanguage::essl_300, EShLangFragment,
                            lightbin::detail::replaced(text, "zzq_", prefix)))
             return prefix + " is refused as a prefix for no reason";

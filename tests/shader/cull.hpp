@@ -39,7 +39,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
                     const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
                                       (!depth_test && (switches & 16) != 0);
-                    if (switches & 1) options.prefix = "my_";
+                    options.prefix = prefixes[switches % std::size(prefixes)];
                     if (!same && cull_shader(pass, options)) every.push_back({pass, options});
                 }
     return every;
@@ -68,14 +68,6 @@ struct CulledGrid {
 
     std::uint32_t id(std::size_t at) const {
         return narrow ? lists[at / 2] >> (at % 2 * 16) & 0xffff : lists[at];
-    }
-    bool operator==(const CulledGrid& other) const {
-        const auto same = [](const auto& a, const auto& b) {
-            return a.size() == b.size() &&
-                   (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
-        };
-        return std::memcmp(&totals, &other.totals, sizeof totals) == 0 && same(tiles, other.tiles) &&
-               same(lists, other.lists);
     }
     /// Of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
     std::uint64_t hash() const {
@@ -204,12 +196,10 @@ inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expecte
         }
         std::sort(own.begin(), own.end());
         const auto wanted = expected.of(cell);
-        std::vector<std::uint32_t> lacking, more;
-        std::set_difference(wanted.begin(), wanted.end(), own.begin(), own.end(),
-                            std::back_inserter(lacking));
-        std::set_difference(own.begin(), own.end(), wanted.begin(), wanted.end(), std::back_inserter(more));
-        tally.missed += lacking.size();
-        tally.excess += more.size();
+        std::vector<std::uint32_t> both;
+        std::set_intersection(wanted.begin(), wanted.end(), own.begin(), own.end(), std::back_inserter(both));
+        tally.missed += wanted.size() - both.size();
+        tally.excess += own.size() - both.size();
     }
     if (grid.totals.entries != end) ++tally.wrong;
     return tally;

@@ -107,7 +107,7 @@ private:
         };
         switch (input.binding.resource) {
         case ShaderResource::uniform_vector:
-            set_uniform(program, place, name, input.bytes);
+            set_uniform(place, name, input.bytes);
             return;
         case ShaderResource::uniform_block: {
             const GLuint index = glGetUniformBlockIndex(program, name);
@@ -149,21 +149,15 @@ void main() {
 }
 )";
 
-    static void set_uniform(GLuint program, GLint place, const char* name,
-                            const std::vector<std::byte>& data) {
-        const std::byte* const bytes = data.data();
-        GLuint index = 0;
-        glGetUniformIndices(program, 1, &name, &index);
-        if (index == GL_INVALID_INDEX) return;  // not read, and so left out
-        GLint type = 0;
-        glGetActiveUniformsiv(program, 1, &index, GL_UNIFORM_TYPE, &type);
-        if (type == GL_UNSIGNED_INT_VEC4)
-            glUniform4uiv(place, 1, reinterpret_cast<const GLuint*>(bytes));
-        else if (type == GL_INT_VEC2)
-            glUniform2iv(place, 1, reinterpret_cast<const GLint*>(bytes));
+    /// A uniform's type is told by its name. What is not read is left out of the program, and has no place.
+    static void set_uniform(GLint place, const std::string& name, const std::vector<std::byte>& data) {
+        if (name.ends_with("corner"))
+            glUniform2iv(place, 1, reinterpret_cast<const GLint*>(data.data()));
+        else if (name.ends_with("grid"))
+            glUniform4uiv(place, 1, reinterpret_cast<const GLuint*>(data.data()));
         else
             glUniform4fv(place, static_cast<GLsizei>(data.size() / 16),
-                         reinterpret_cast<const GLfloat*>(bytes));
+                         reinterpret_cast<const GLfloat*>(data.data()));
     }
 
     OffscreenContext context_;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 enum class Stage : std::uint8_t { compute, fragment };
@@ -58,6 +59,11 @@ struct Share {
 inline Share share_of(int count, char** arguments) {
     return count < 3 ? Share{} : Share{std::stoul(arguments[count - 2]), std::stoul(arguments[count - 1])};
 }
+
+/// Prefixes of names, which texts have in turns: usual ones, and some that are nearly a reserved word with a name, or nearly
+/// reserved themselves.
+inline constexpr std::string_view prefixes[] = {"lightbin_", "my_", "vol", "volat", "Vola", "vola_",
+                                                "ext",       "gl",  "GL",  "Gl_",   "x9",   "a_"};
 
 /// What comes before a text.
 inline std::string version_line(lightbin::ShaderLanguage language) {

@@ -55,6 +55,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
 constexpr unsigned switch_count = 16;  // sets of the options that are on or off
 
 inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, unsigned switches) {
+    options.prefix = prefixes[(switches + 3 * static_cast<unsigned>(options.language)) % std::size(prefixes)];
     options.flip_y = switches & 1;
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
@@ -86,7 +87,6 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     options.slices = {6, set};
     options.bins = {7, set};
     options.view = {8, set};
-    if (set != 0) options.prefix = "my_";
 
     std::vector<lightbin::ShaderOptions> every = every_list(options);
     options.push_constants = dialect.vulkan;
