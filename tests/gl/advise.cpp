@@ -16,9 +16,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
 #include <vector>
 
 using lightbin::Slicing;

@@ -185,15 +185,6 @@ TEST_CASE("several samples a pixel") {
         const Unlikeness difference = compare(four, draw(stage, technique, camera, settings));
         CHECK(difference.much_share < (technique.g_buffer_bits == 0 ? 0.01 : 0.03));
     }
-    for (const int none : {3, 1000}) {
-        settings.samples = none;
-        CHECK_THROWS_WITH(draw(stage, tiled_forward(), camera, settings),
-                          ("this OpenGL has no targets of " + std::to_string(none) + " samples").c_str());
-    }
-    CHECK(glGetError() == GL_NO_ERROR);
-    settings.samples = 1;
-    // What is refused leaves no error behind.
-    CHECK(draw(stage, forward_every_light(), camera, settings) == one);
 }
 
 TEST_CASE("evaluations are those of the lists") {
@@ -217,7 +208,7 @@ TEST_CASE("evaluations are those of the lists") {
     const auto grid = lists.bin(stage, z_bounds);
     lightbin::Binner<lightbin::Options{.depth_test = true}> binner;
     const auto grid_by_boxes = value_of(binner.bin(view, stage.lights(), {.bounds = z_bounds}));
-    std::uint64_t listed = 0, listed_by_boxes = 0, pixels = 0, reached = 0, nearly_reached = 0;
+    std::uint64_t listed = 0, listed_by_boxes = 0, pixels = 0;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
             const float d = depth[static_cast<std::size_t>(y * settings.width + x)];
@@ -226,17 +217,6 @@ TEST_CASE("evaluations are those of the lists") {
             const int tx = x / settings.tile_size, ty = y / settings.tile_size;
             listed += grid.lights_in(tx, ty).size();
             listed_by_boxes += grid_by_boxes.lights_in(tx, ty).size();
-            const auto p = view.view_point(
-                {x + 0.5, y + 0.5,
-                 static_cast<double>(view.view_depths(static_cast<double>(d), static_cast<double>(d)).min)});
-            for (const lightbin::Sphere& light : stage.lights()) {
-                const double dx = p.x - static_cast<double>(light.x), dy = p.y - static_cast<double>(light.y),
-                             dz = p.z - static_cast<double>(light.z);
-                const double distance =
-                    std::sqrt(dx * dx + dy * dy + dz * dz) / static_cast<double>(light.radius);
-                reached += distance < 0.999;
-                nearly_reached += distance < 1.07;
-            }
         }
     REQUIRE(pixels > 1000);
     CHECK(listed > pixels);
@@ -253,9 +233,4 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(counted(tiled_forward_pre_z(ZEnds::both, Reduction::cpu)) < listed * 11 / 10);
     CHECK(counted(forward_every_light()) >= pixels * scene.lights.size());
     CHECK(counted(tiled_forward()) > listed);
-    // A ball of triangles that holds the light's.
-    const std::uint64_t marked = counted(deferred_stencil(32));
-    CHECK(marked >= reached);
-    CHECK(marked <= nearly_reached);
-    CHECK(reached > pixels);
 }

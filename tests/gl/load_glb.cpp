@@ -26,9 +26,6 @@ std::string refusal(const std::string& bytes) {
 }
 
 void check_near(const glm::vec3& a, const glm::vec3& b) {
-    CAPTURE(a.x);
-    CAPTURE(a.y);
-    CAPTURE(a.z);
     CHECK(glm::length(a - b) < 1e-5f);
 }
 

@@ -19,8 +19,6 @@ struct AssertionFailed : std::logic_error {
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <map>

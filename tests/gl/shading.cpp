@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The pictures of tiled_forward are those of every light in every fragment where surfaces hide each other within pixels,
-// and where lights move.
+// The pictures of tiled_forward are those of every light in every fragment where surfaces hide each other within pixels.
 #include "gl_context.hpp"
-#include "moving_lights.hpp"
 #include "renderer.hpp"
 
 #include <doctest/doctest.h>
 
 #include <random>
-#include <vector>
 
 namespace {
 
@@ -70,30 +67,4 @@ TEST_CASE("with MSAA no light is missing where surfaces hide each other within p
                 CHECK(compare(expected, renderer.read_picture()).pixels == 0);
             }
         }
-}
-
-TEST_CASE("a picture has the lights where they are by now") {
-    Scene scene = make_street();
-    const std::vector<Light> places = scene.lights;
-    const OffscreenContext context(0);
-    Renderer renderer(scene, context.glsl());
-    FrameSettings settings;
-    settings.width = 160;
-    settings.height = 90;
-    settings.exposure = renderer.meter(scene.cameras[0], settings);
-    renderer.draw(scene.cameras[0], settings);
-    const Picture before = renderer.read_picture();
-    for (const DepthUse depth : {DepthUse::pre_pass, DepthUse::clusters}) {
-        settings.depth = depth;
-        move_lights(places, 3, scene.lights);
-        renderer.draw(scene.cameras[0], settings);
-        const Picture moved = renderer.read_picture();
-        CHECK(compare(before, moved).pixels > 1000);
-        renderer.draw_every_light(scene.cameras[0], settings);
-        CHECK(compare(moved, renderer.read_picture()).pixels == 0);
-    }
-    settings.depth = DepthUse::pre_pass;
-    move_lights(places, 0, scene.lights);
-    renderer.draw(scene.cameras[0], settings);
-    CHECK(compare(before, renderer.read_picture()).pixels == 0);
 }

@@ -10,17 +10,13 @@
 #include <lightbin/spot.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <random>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::ShaderLanguage language) {

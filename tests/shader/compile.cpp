@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Hands every text of the library but WGSL, and the example's shaders, to glslang; what is for Vulkan or HLSL becomes
+// Hands every text of the library but WGSL to glslang; what is for Vulkan or HLSL becomes
 // SPIR-V, which the validator of SPIRV-Tools then reads. And which prefixes names may have is held against the compilers and
 // the languages' reserved words.
 //   compile WORDS LANGUAGE: its number; WORDS: a file of keywords and reserved words of GLSL 4.60,
 //   GLSL ES 3.20, Vulkan's GLSL, HLSL and WGSL, but for those that end with a digit, as no name of the texts does
 #include "vulkan/compile.hpp"
-#include "shaders.hpp"
 #include "texts.hpp"
 
 #include <spirv-tools/libspirv.hpp>
@@ -18,7 +17,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -157,30 +155,6 @@ std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
     return made == 0 ? "volatile is not found" : "";
 }
 
-void compile_example(Compiler& compiler, int glsl) {
-    const auto compile = [&](EShLanguage stage, const std::string& text) {
-        compiler.compile(glsl_language(glsl), stage, text);
-    };
-    for (const bool orthographic : {false, true})
-        for (const bool skip_background : {false, true})
-            for (const int samples : {1, 4}) {
-                if (samples > 1 && glsl == 300) continue;  // it has no multisampled textures
-                compile(EShLangFragment,
-                        reduce_fragment_shader(glsl, samples, orthographic, skip_background));
-            }
-    compile(EShLangVertex, geometry_vertex_shader(glsl));
-    compile(EShLangFragment, depth_fragment_shader(glsl));
-    compile(EShLangVertex, overlay_vertex_shader(glsl));
-    using lightbin::Slicing;
-    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
-        compile(EShLangFragment, heat_map_fragment_shader(glsl, slicing));
-        for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
-            compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::tile_list, kinds, slicing));
-    }
-    for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
-        compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::every_light, kinds));
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -195,8 +169,6 @@ int main(int count, char** arguments) {
         std::printf("%s\n", problem.c_str());
         return 1;
     }
-    for (const int glsl : {330, 430, 300, 310})
-        if (glsl_language(glsl) == language) compile_example(compiler, glsl);
     std::printf("%d texts, %d of them SPIR-V; %d refused\n", compiler.texts, compiler.valid,
                 compiler.refused);
     return (compiler.texts == 0) != (language == ShaderLanguage::wgsl) || compiler.refused > 0;

@@ -7,6 +7,7 @@
 #include <lightbin/shader_cull.hpp>
 
 #include <cstdio>
+#include <cstring>
 #include <optional>
 
 /// A pass and its options.

@@ -20,42 +20,37 @@ BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::Light
 }
 
 /// A way to make a grid, whose options are both the Binner's and the shaders'.
-template <bool depth_test, lightbin::Slicing slicing, bool world = false> struct CullWay {
-    static constexpr lightbin::Options options{.depth_test = depth_test, .slicing = slicing};
-    static constexpr bool world_space = world, max_only = false;
-    static constexpr float slice_margin = 0;
+struct CullWay {
+    bool depth_test = false;
+    lightbin::Slicing slicing = lightbin::Slicing::none;
+    bool world_space = false;
+    bool max_only = false;   // the maximum Z bounds alone
+    float slice_margin = 0;  // of slices for readers that compute a depth's slice by a formula of their own
+    constexpr lightbin::Options options() const { return {.depth_test = depth_test, .slicing = slicing}; }
 };
-
-/// The same way with the maximum Z bounds alone.
-template <class Way> struct MaxOnly : Way { static constexpr bool max_only = true; };
-
-/// The same way with slices for readers that compute a depth's slice by a formula of their own.
-template <class Way> struct WithMargin : Way { static constexpr float slice_margin = 0x1p-5f; };
 
 class CullTests {
 public:
     CullTests(lightbin::ShaderLanguage language, const Share& share) : language_(language), share_(share) {}
 
     template <class Device> bool run(Device& device) {
-        constexpr bool none = false, tested = true;
         constexpr auto tiles = lightbin::Slicing::none, clusters = lightbin::Slicing::clusters;
         smallest_and_largest(device);
         short_of_room(device);
         beyond_32_bits(device);
         as_the_binner(device);
         ordinary(device);
-        ways<CullWay<none, tiles>>(device, "tiles");
-        ways<CullWay<none, tiles, true>>(device, "tiles, world space");
-        ways<CullWay<none, clusters>>(device, "clusters");
-        ways<CullWay<tested, tiles>>(device, "depth test");
-        ways<CullWay<tested, clusters>>(device, "clusters, depth test");
-        ways<CullWay<tested, clusters, true>>(device, "clusters, depth test, world space");
-        ways<CullWay<tested, tiles, true>>(device, "depth test, world space");
-        constexpr int one_size[] = {16};
-        ways<MaxOnly<CullWay<tested, tiles>>>(device, "depth test, maximum only", one_size);
-        ways<WithMargin<CullWay<tested, clusters>>>(device, "clusters, depth test, slices with a margin",
-                                                    one_size);
-        ways<WithMargin<CullWay<none, clusters>>>(device, "clusters, slices with a margin", one_size);
+        constexpr int both_sizes[] = {16, 11}, one_size[] = {16};
+        ways<CullWay{}>(device, both_sizes);
+        ways<CullWay{false, tiles, true}>(device, both_sizes);
+        ways<CullWay{false, clusters}>(device, both_sizes);
+        ways<CullWay{true, tiles}>(device, both_sizes);
+        ways<CullWay{true, clusters}>(device, both_sizes);
+        ways<CullWay{true, clusters, true}>(device, both_sizes);
+        ways<CullWay{true, tiles, true}>(device, both_sizes);
+        ways<CullWay{true, tiles, false, true}>(device, one_size);
+        ways<CullWay{true, clusters, false, false, 0x1p-5f}>(device, one_size);
+        ways<CullWay{false, clusters, false, false, 0x1p-5f}>(device, one_size);
         total_.print("all");
         return total_.cases > 0 && total_.missed == 0 && total_.wrong == 0;
     }
@@ -66,17 +61,14 @@ private:
         return turn_++ % share_.count == share_.first;
     }
 
-    static constexpr int both_sizes[] = {16, 11};
-
-    template <class Way, class Device>
-    void ways(Device& device, const char* name, std::span<const int> tile_sizes = both_sizes) {
+    template <CullWay way, class Device> void ways(Device& device, std::span<const int> tile_sizes) {
         for (int kind = 0; kind < 3; ++kind)
             for (int camera = 0; camera < camera_count; ++camera)
                 for (const int tile_size : tile_sizes) {
                     if (!mine()) continue;
                     const auto spheres = cull_lights(kind, 700, static_cast<unsigned>(kind * 10 + camera));
-                    one<Way>(device, name, spheres, camera, tile_size);
-                    one<Way>(device, name, cull_spots(spheres), camera, tile_size);
+                    one<way>(device, spheres, camera, tile_size);
+                    one<way>(device, cull_spots(spheres), camera, tile_size);
                 }
     }
 
@@ -251,23 +243,22 @@ private:
             spot.radius *= 3;
             spot.cos_half_angle = number(0, 0.866f);
         }
-        using Tiles = CullWay<false, Slicing::none>;
-        make_ordinary<Tiles>(device, "ordinary spheres", tiles, lights, 1000);
-        make_ordinary<Tiles>(device, "ordinary spots", tiles, cull_spots(lights), 20);
-        make_ordinary<CullWay<true, Slicing::clusters>>(device, "ordinary spots, clusters, depth test",
+        make_ordinary<CullWay{}>(device, "ordinary spheres", tiles, lights, 1000);
+        make_ordinary<CullWay{}>(device, "ordinary spots", tiles, cull_spots(lights), 20);
+        make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary spots, clusters, depth test",
                                                         clusters, wide, 10);
     }
 
-    template <class Way, class Device, class Light>
+    template <CullWay way, class Device, class Light>
     void make_ordinary(Device& device, const char* name, const BuiltScene& scene,
                        const std::vector<Light>& lights, std::size_t one_in) {
         using namespace lightbin;
         LightCounts counts;
-        const BuiltLists expected = binned<Way::options>(scene, lights, counts);
+        const BuiltLists expected = binned<way.options()>(scene, lights, counts);
         CullCase made = simple(scene.view, lights, 2 * expected.ids.size());
-        made.options.slicing = Way::options.slicing;
-        made.options.depth_test = Way::options.depth_test;
-        if (Way::options.slicing != Slicing::none) {
+        made.options.slicing = way.slicing;
+        made.options.depth_test = way.depth_test;
+        if (way.slicing != Slicing::none) {
             made.slices = scene.slices;
             made.z_bounds = cull_depths(scene, {}, true, Slicing::clusters);
         }
@@ -279,41 +270,41 @@ private:
 
     /// One grid. Lights of world space are those of view space, moved by the inverse of a view matrix; the Binner gets
     /// the same ones.
-    template <class Way, class Light, class Device>
-    void one(Device& device, const char* name, const std::vector<Light>& lights, int camera, int tile_size) {
+    template <CullWay way, class Light, class Device>
+    void one(Device& device, const std::vector<Light>& lights, int camera, int tile_size) {
         using namespace lightbin;
         constexpr bool spots = std::is_same_v<Light, Spot>;
-        constexpr Slicing slicing = Way::options.slicing;
+        constexpr Slicing slicing = way.slicing;
         BuiltScene scene{builder_view(camera, 333, 217, tile_size, false),
                          {},
-                         Slices::exponential(17, 0.7f, 90)->with_margin(Way::slice_margin)};
+                         Slices::exponential(17, 0.7f, 90)->with_margin(way.slice_margin)};
         const auto bounds = cull_z_bounds(scene.view);
-        if (!Way::max_only) scene.bounds.min = bounds[0];
+        if (!way.max_only) scene.bounds.min = bounds[0];
         scene.bounds.max = bounds[1];
         CullCase made = simple(scene.view, lights, 0);
         made.lights = words_of(lights, spots ? 11 : 5, 1);
         made.options.lights_at = {
             .stride = spots ? 11u : 5u, .centre = 1, .radius = 4, .axis = 5, .cosine = 8};
-        made.options.depth_test = Way::options.depth_test;
+        made.options.depth_test = way.depth_test;
         made.options.slicing = slicing;
-        made.options.max_only = Way::max_only;
-        made.options.world_space = Way::world_space;
+        made.options.max_only = way.max_only;
+        made.options.world_space = way.world_space;
         made.options.ids = turn_ % 2 == 0 ? IdWidth::u16 : IdWidth::u32;
         made.options.count_in_buffer = turn_ % 3 == 0;
         made.options.count_at = static_cast<std::uint32_t>(turn_ % 5);
         if (slicing != Slicing::none) made.slices = scene.slices;
-        made.z_bounds = cull_depths(scene, bounds, Way::options.depth_test, slicing);
-        if (Way::world_space) made.to_view = to_view();
+        made.z_bounds = cull_depths(scene, bounds, way.depth_test, slicing);
+        if (way.world_space) made.to_view = to_view();
         LightCounts counts;
-        const BuiltLists expected = Way::world_space
-                                        ? binned<Way::options>(scene, world_space(lights, to_view()), counts)
-                                        : binned<Way::options>(scene, lights, counts);
+        const BuiltLists expected = way.world_space
+                                        ? binned<way.options()>(scene, world_space(lights, to_view()), counts)
+                                        : binned<way.options()>(scene, lights, counts);
         made.room = static_cast<std::uint32_t>(2 * expected.ids.size() + 30000);
         const CulledGrid grid = make(device, made);
         CullTally tally = compare_lists(grid, expected);
         tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
-        add(name + std::string(", ") + made.name + ", camera " + std::to_string(camera) + ", tile " +
-                std::to_string(tile_size),
+        add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) + ", camera " +
+                std::to_string(camera) + ", tile " + std::to_string(tile_size),
             tally);
     }
 

@@ -15,7 +15,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -73,57 +72,28 @@ struct Real {
         return r;
     }
     double d() const { return static_cast<double>(v); }
+
+    friend Real operator+(Real a, Real b) { return exact(rounded_sum(a.d() + b.d())); }
+    friend Real operator-(Real a, Real b) { return exact(rounded_sum(a.d() - b.d())); }
+    friend Real operator*(Real a, Real b) { return exact(rounded_sum(a.d() * b.d())); }
+    friend Real operator/(Real a, Real b) { return exact(off_by(a.d() / b.d(), 2.5)); }
+    friend Real operator-(Real a) { return exact(-a.v); }
+    friend Real& operator+=(Real& a, Real b) { return a = a + b; }
+    friend bool operator<(Real a, Real b) { return a.v < b.v; }
+    friend bool operator>(Real a, Real b) { return a.v > b.v; }
+    friend bool operator<=(Real a, Real b) { return a.v <= b.v; }
+    friend bool operator>=(Real a, Real b) { return a.v >= b.v; }
+    friend Real abs(Real a) { return exact(std::fabs(a.v)); }
+    friend Real min(Real a, Real b) { return b.v < a.v ? b : a; }
+    friend Real max(Real a, Real b) { return a.v < b.v ? b : a; }
+    friend Real clamp(Real a, Real low, Real high) { return min(max(a, low), high); }
+    friend Real sqrt(Real a) { return exact(off_by(1 / exact(off_by(1 / std::sqrt(a.d()), 2)).d(), 2.5)); }
+
     float v;  // without an initializer, as GLM keeps it in unions
 };
 
-Real operator+(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() + b.d()));
-}
-Real operator-(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() - b.d()));
-}
-Real operator*(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() * b.d()));
-}
-Real operator/(Real a, Real b) {
-    return Real::exact(off_by(a.d() / b.d(), 2.5));
-}
-Real operator-(Real a) {
-    return Real::exact(-a.v);
-}
-Real& operator+=(Real& a, Real b) {
-    return a = a + b;
-}
-bool operator<(Real a, Real b) {
-    return a.v < b.v;
-}
-bool operator>(Real a, Real b) {
-    return a.v > b.v;
-}
-bool operator<=(Real a, Real b) {
-    return a.v <= b.v;
-}
-bool operator>=(Real a, Real b) {
-    return a.v >= b.v;
-}
-Real abs(Real a) {
-    return Real::exact(std::fabs(a.v));
-}
-Real min(Real a, Real b) {
-    return b.v < a.v ? b : a;
-}
-Real max(Real a, Real b) {
-    return a.v < b.v ? b : a;
-}
 std::uint32_t max(std::uint32_t a, std::uint32_t b) {
     return a < b ? b : a;
-}
-Real clamp(Real a, Real low, Real high) {
-    return min(max(a, low), high);
-}
-Real sqrt(Real a) {
-    const Real inverse = Real::exact(off_by(1 / std::sqrt(a.d()), 2));
-    return Real::exact(off_by(1 / inverse.d(), 2.5));
 }
 
 using uint = std::uint32_t;

@@ -9,7 +9,6 @@
 
 #include <epoxy/gl.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>

@@ -164,6 +164,16 @@ inline void fit_texture(Input& input, int tiles_x) {
     input.bytes.resize(row * input.height, std::byte{0xee});
 }
 
+/// What a compute shader writes.
+inline Input result_input(std::size_t bytes) {
+    using namespace lightbin;
+    Input result;
+    result.binding = {
+        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
+    result.bytes.resize(bytes, std::byte{0xee});
+    return result;
+}
+
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
 /// unset      the constants of the grid are 0: no pixel has lights
 /// multiview  the views are drawn at once
@@ -270,16 +280,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         }
     if (stage == Stage::compute) {
         job.result = job.inputs.size();
-        Input result;
-        result.binding = {"result_block",
-                          ShaderResource::writable_buffer,
-                          {result_binding, 0},
-                          TexelFormat::none,
-                          16,
-                          0,
-                          0};
-        result.bytes.resize(job.expected.size() * 4, std::byte{0xee});
-        job.inputs.push_back(result);
+        job.inputs.push_back(result_input(job.expected.size() * 4));
     }
     return job;
 }

@@ -25,7 +25,9 @@ inline Job text_job(std::string name, lightbin::ShaderLanguage language, Stage s
 inline Job reader_text_job(const lightbin::ShaderOptions& options, Stage stage) {
     lightbin::ShaderText shader = *shader_snippet(options);
     shader.text = reader_text(options, shader, stage, 99, 99);
-    return text_job("a snippet", options.language, stage, std::move(shader));
+    Job job = text_job("a snippet", options.language, stage, std::move(shader));
+    if (stage == Stage::compute) job.inputs.push_back(result_input(0));
+    return job;
 }
 
 inline Job reduction_text_job(const lightbin::ReduceShaderOptions& options) {

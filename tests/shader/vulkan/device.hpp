@@ -10,12 +10,14 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <list>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 class VulkanDevice {
