@@ -67,7 +67,6 @@ enum class ErrorCode : std::uint8_t {
     texture_width_out_of_range,
     bindings_overlap,
     not_a_prefix,
-    no_such_mask_shader,
     // light grids made on the GPU
     no_cull_of_boxes,
     too_many_slices,
@@ -158,13 +157,13 @@ inline constexpr const char* error_sentences[] = {
     "this language has no descriptor sets, register spaces or groups: each set must be 0, and one is {given}",
     "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
-    "lists that are built on the GPU are of tiles or of clusters, not of z-bins",
+    ("lists that are built on the GPU are of tiles or of clusters, not of z-bins; masks are of tiles or of z-bins, not "
+     "of clusters"),
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("the option prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
-    "masks of columns and rows have no clusters, and a shader reads those of one view: use lists for clusters and views",
     // light grids made on the GPU
     "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
     "a grid that is built on the GPU has at most {available} slices, not {given}",

@@ -150,7 +150,6 @@ typedef enum lightbin_error {
     LIGHTBIN_TOO_MANY_SLICES = 157,
     LIGHTBIN_VIEW_MATRIX_DISTORTS = 158,
     LIGHTBIN_SCRATCH_TOO_LARGE = 159,
-    LIGHTBIN_NO_SUCH_MASK_SHADER = 160,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;

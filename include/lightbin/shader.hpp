@@ -176,7 +176,7 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 /// options.views or more is empty. `check_view` has one array `image` of constants: each view's ShaderView in turn.
 ///
 /// With masks the lights come in the order of LightMasks::ids(), which with z_bins is that of depth, and light.id is the
-/// position in the caller's array. There are no clusters and no several views of masks.
+/// position in the caller's array. Masks are of one view and have no clusters.
 ///
 /// Two checks find mistakes in the set-up, by marking the pixels where something is wrong:
 ///

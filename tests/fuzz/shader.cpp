@@ -310,7 +310,7 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
               ErrorCode::no_wave_operations);
     refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
-    refuse_if(masks && options.slicing == Slicing::clusters, ErrorCode::no_such_mask_shader);
+    refuse_if(masks && options.slicing == Slicing::clusters, ErrorCode::no_such_slicing_shader);
     refuse_if(options.storage == ListStorage::texture_2d &&
                   (options.texture_width == 0 || options.texture_width > 16384),
               ErrorCode::texture_width_out_of_range);

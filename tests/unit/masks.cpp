@@ -4,6 +4,7 @@
 
 #include <lightbin/coverage.hpp>
 #include <lightbin/masks.hpp>
+#include <lightbin/shader.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
 
@@ -229,6 +230,13 @@ TEST_CASE("masks of an empty viewport are empty") {
 }
 
 TEST_CASE("what masks refuse") {
+    const auto clusters = shader_snippet({.slicing = Slicing::clusters, .masks = true});
+    REQUIRE(!clusters);
+    CHECK(clusters.error().code == ErrorCode::no_such_slicing_shader);
+    const auto views = shader_snippet({.masks = true, .views = 2});
+    REQUIRE(!views);
+    CHECK(views.error().code == ErrorCode::views_out_of_range);
+    CHECK(views.error().available == 1);
     MaskBinner binner;
     const View view = test::view({64, 64}, 16);
     const auto few = test::random_lights(3, 1);

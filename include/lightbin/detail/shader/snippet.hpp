@@ -60,8 +60,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const Dialect& dialect = writer.dialect;
     const ListFormat& format = options.format;
     const bool textures = options.storage == ListStorage::texture_2d;
+    const bool masks = options.masks;
     // Every device allows a uniform block of 16384 bytes. It holds the constants of `check_view` for so many views.
-    constexpr std::uint32_t max_views = 16384 / sizeof(ShaderView);
+    const std::uint32_t max_views = masks ? 1 : 16384 / sizeof(ShaderView);
     if (const auto error = refuse_common(
             options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
             {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,
@@ -73,14 +74,12 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
               {ErrorCode::no_wave_operations}},
              {options.views < 1 || options.views > max_views,
               {ErrorCode::views_out_of_range, options.views, max_views}},
-             {options.masks && (options.slicing == Slicing::clusters || options.views > 1),
-              {ErrorCode::no_such_mask_shader}},
+             {masks && options.slicing == Slicing::clusters, {ErrorCode::no_such_slicing_shader}},
              {options.tile_size < 0,
               {ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)}},
              {textures && (options.texture_width < 1 || options.texture_width > 16384),
               {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
         return *error;
-    const bool masks = options.masks;
     if (const auto error = refuse(format); error && !masks) return *error;
     // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
     const std::uint64_t limit =
