@@ -151,7 +151,7 @@ lightbin::View Stage::view(int tile_size) const {
 }
 
 std::vector<LightFootprint> Stage::footprints(int tile_size) const {
-    lightbin::Footprints<false> projected;
+    lightbin::Footprints projected;
     projected.project(lightbin::machine_isa(), view(tile_size), lightbin::detail::as_lights(spheres_),
                       lightbin::Parallel{});
     const lightbin::detail::FootprintArrays& of = projected.arrays();

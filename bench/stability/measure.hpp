@@ -452,7 +452,7 @@ private:
         std::vector<Turn> turns;
         for (const Scene& scene : scenes)
             turns.push_back({scene, view_of(scene), scene.lights});
-        lightbin::Footprints<false> footprints;
+        lightbin::Footprints footprints;
         const lightbin::Isa isa = lightbin::machine_isa();
         result_.ours.ns = time(turns, [&](const Turn& turn) {
             with_lights(turn.scene,

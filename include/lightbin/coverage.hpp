@@ -27,40 +27,6 @@ struct LightCoverage {
     float pixels;
 };
 
-namespace detail {
-
-/// Stores the LightCoverage of each light in view, in ascending order of id.
-///
-/// footprints  of lights of the LightKind `kind`, with the lights in view space
-/// to          room for footprints.visible() lights
-template <LightKind kind, class AnyFootprints>
-LIGHTBIN_ONCE void find_coverage(const View& view, const AnyFootprints& footprints, const Parallel& parallel,
-                                 LightCoverage* to) {
-    const std::span<const FootprintRun> runs = footprints.runs();
-    const FootprintArrays& from = footprints.arrays();
-    // The next float above a depth that was rounded to nearest, so that the exact depth is less; infinity as it is.
-    const auto next_above = [](float depth) { return is_finite(depth) ? -next_below(-depth) : depth; };
-    parallel.run(runs.size(), [&](std::size_t run) {
-        LightCoverage* light = to;
-        for (const FootprintRun& before : runs.first(run))
-            light += before.end - before.begin;
-        for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
-            const LightExtent extent = extent_of<kind>(camera_of(view), from.view_lights, from.ids[i]);
-            const double tiles = tiles_across(camera_of(view), extent.sphere);
-            *light++ = {from.ids[i],
-                        from.x0[i],
-                        from.y0[i],
-                        from.x1[i],
-                        from.y1[i],
-                        -next_above(-extent.nearest),
-                        next_above(extent.farthest),
-                        float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
-        }
-    });
-}
-
-}  // namespace detail
-
 /// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
 /// are projected for it, as Binner::bin() projects them for the lists.
 ///
@@ -74,10 +40,34 @@ Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& 
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
     const detail::DefaultFloatEnvironment environment;
-    Footprints<true> footprints;
-    footprints.project(machine_isa(isa), view, source, threads);
+    Footprints footprints;
+    footprints.project(machine_isa(isa), view, source, threads, detail::Kept::lights);
     std::vector<LightCoverage> found(footprints.visible());
-    detail::find_coverage<std::remove_cvref_t<decltype(source)>::kind>(view, footprints, threads, found.data());
+    const std::span<const detail::FootprintRun> runs = footprints.runs();
+    const detail::FootprintArrays& from = footprints.arrays();
+    const detail::Camera& camera = detail::camera_of(view);
+    // The next float above a depth that was rounded to nearest, so that the exact depth is less; infinity as it is.
+    const auto next_above = [](float depth) {
+        return detail::is_finite(depth) ? -detail::next_below(-depth) : depth;
+    };
+    Parallel(threads).run(runs.size(), [&](std::size_t run) {
+        LightCoverage* light = found.data();
+        for (const detail::FootprintRun& before : runs.first(run))
+            light += before.end - before.begin;
+        for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
+            constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
+            const detail::LightExtent extent = detail::extent_of<kind>(camera, from.view_lights, from.ids[i]);
+            const double tiles = detail::tiles_across(camera, extent.sphere);
+            *light++ = {from.ids[i],
+                        from.x0[i],
+                        from.y0[i],
+                        from.x1[i],
+                        from.y1[i],
+                        -next_above(-extent.nearest),
+                        next_above(extent.farthest),
+                        detail::float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
+        }
+    });
     return found;
 }
 

@@ -8,10 +8,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Why a call of this library refused its input. to_string() has a sentence that names the likely cause of each.
+/// Why a call of this library refused its input. to_string() has a sentence that names the likely cause of each. The
+/// numbers are those of lightbin_error in lightbin.h.
 enum class ErrorCode : std::uint8_t {
     // View::from_projection
-    matrix_not_finite,
+    matrix_not_finite = 100,
     not_a_projection,
     projection_transposed,
     eye_not_at_origin,
@@ -171,14 +172,16 @@ inline constexpr const char* error_sentences[] = {
     ("the passes would need {needed} bytes of scratch memory, and their 32-bit indices reach {available}: use larger "
      "tiles, fewer slices or fewer lights"),
 };
-static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) + 1);
+static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) - 99);
 
 }  // namespace detail
 
 /// Returns one English sentence that names the cause and a remedy. Placeholders {needed}, {available} and {given}
 /// stand for the numbers of an Error, which Error::message() fills in; {given} is Error::needed as a signed number.
 constexpr const char* to_string(ErrorCode code) {
-    return code <= ErrorCode::scratch_too_large ? detail::error_sentences[static_cast<int>(code)] : "unknown error";
+    return code >= ErrorCode::matrix_not_finite && code <= ErrorCode::scratch_too_large
+               ? detail::error_sentences[static_cast<int>(code) - 100]
+               : "unknown error";
 }
 
 }}  // namespace lightbin

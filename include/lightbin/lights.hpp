@@ -18,17 +18,38 @@ template <class Light, class ToLight> struct Lights {
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
     static constexpr detail::LightKind kind = detail::kind_of<detail::MadeBy<ToLight, Light>>;
 
+    using Made = std::conditional_t<kind == detail::LightKind::box, Box,
+                                    std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
+
     /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
-    auto made(const Light& light) const {
-        using Made = std::conditional_t<kind == detail::LightKind::box, Box,
-                                        std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
-        return static_cast<Made>(to_light(light));
-    }
+    Made made(const Light& light) const { return static_cast<Made>(to_light(light)); }
 
     /// Writes what made() returns of the elements first..first + count - 1 of the array.
-    template <class Made> void make(std::size_t first, std::size_t count, Made* to) const {
+    void make(std::size_t first, std::size_t count, Made* to) const {
         for (std::size_t i = 0; i < count; ++i)
             to[i] = made(array[first + i]);
+    }
+
+    /// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
+    /// layout, so that kernels can read the array directly; else null.
+    const void* as_they_are() const {
+        if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
+            return array.data();
+        } else if constexpr (std::is_same_v<ToLight, AsLight> && kind == detail::LightKind::sphere &&
+                             sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
+            if (array.empty()) return nullptr;
+            if constexpr (std::is_base_of_v<Sphere, Light>) {
+                return array.data();
+            } else if constexpr (!std::convertible_to<const Light&, Sphere> && detail::Vec4<Light>) {
+                const void* const first_byte = array.data();
+                const float* const numbers = static_cast<const float*>(first_byte);
+                const Light& first = array.front();
+                if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
+                    &first.w == numbers + 3)
+                    return first_byte;
+            }
+        }
+        return nullptr;
     }
 
     /// Returns the sphere, in view space, of an array element.
@@ -157,28 +178,6 @@ template <class Range> auto lasting_lights(Range&& lights) {
                       std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
                   "lightbin: these lights are gone after the expression: give the array a name that lives on");
     return Given(as_lights(lights));
-}
-
-/// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
-/// layout, so that kernels can read the array directly; else null.
-template <class Light, class ToLight> const void* as_they_are(const Lights<Light, ToLight>& lights) {
-    if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
-        return lights.array.data();
-    } else if constexpr (std::is_same_v<ToLight, AsLight> && Lights<Light, ToLight>::kind == LightKind::sphere &&
-                         sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
-        if (lights.array.empty()) return nullptr;
-        if constexpr (std::is_base_of_v<Sphere, Light>) {
-            return lights.array.data();
-        } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4<Light>) {
-            const void* const array = lights.array.data();
-            const float* const numbers = static_cast<const float*>(array);
-            const Light& first = lights.array.front();
-            if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
-                &first.w == numbers + 3)
-                return array;
-        }
-    }
-    return nullptr;
 }
 
 }  // namespace detail

@@ -644,7 +644,7 @@ static void test_cull(void) {
     options.kind = LIGHTBIN_CULL_BOX;
     CHECK(lightbin_cull_shader(&options, &shader).error == LIGHTBIN_NO_CULL_OF_BOXES);
     options.kind = LIGHTBIN_CULL_SPOT;
-    options.ids = 4;
+    options.ids = 3;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.ids"));
     options.ids = LIGHTBIN_U8;
     CHECK(lightbin_cull_shader(&options, &shader).error == LIGHTBIN_IDS_TOO_NARROW);

@@ -241,7 +241,7 @@ private:
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
-                lightbin::Footprints<false> rectangles;
+                lightbin::Footprints rectangles;
                 rectangles.project(lightbin::machine_isa(), *view_, lightbin::detail::as_lights(lights), {});
                 return rectangles.area();
             });

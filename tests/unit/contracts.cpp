@@ -97,7 +97,7 @@ template <class Enum> void check_words(Enum first, Enum last) {
 }  // namespace
 
 TEST_CASE("an error's sentence has its numbers, with their sign where what was given may be negative") {
-    for (int code = 0; code <= static_cast<int>(ErrorCode::scratch_too_large); ++code) {
+    for (int code = 100; code <= static_cast<int>(ErrorCode::scratch_too_large); ++code) {
         const std::string sentence = to_string(static_cast<ErrorCode>(code)),
                           message = Error{static_cast<ErrorCode>(code), 1234, 5678}.message();
         const auto has = [&](const char* part) { return sentence.find(part) != std::string::npos; };

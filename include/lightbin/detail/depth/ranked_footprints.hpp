@@ -16,9 +16,10 @@ public:
     /// Finds the z-bins, intervals of view depth, that each light meets, and sorts the footprints by the first of them.
     /// A light's view depths, a sphere's being z - r to z + r, include their ends and are widened by the slices'
     /// margin. A light that ends close to a boundary may also count for the bin on the other side.
-    template <detail::LightKind kind>
-    std::optional<Error> order(Isa isa, const View& view, const Footprints<true>& footprints,
-                               const Slices& slices) {
+    ///
+    /// kernel  find_depth_buckets() for the lights' kind
+    void order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+               const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
@@ -31,8 +32,8 @@ public:
             last_bins[i] = last;
             ++ends[first];
         };
-        table_of(slices).find(detail::depth_buckets_kernel<kind>(isa), true, detail::camera_of(view).z_sign,
-                                      footprints.arrays(), footprints.runs(), found);
+        table_of(slices).find(kernel, true, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
+                              found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
         // and at last the rank after the last of them.
@@ -49,11 +50,9 @@ public:
                 sources[ends[first_bins[i]]++] = i;
         gather_lights(footprints.arrays());
         find_ranges();
-        return {};
     }
 
-    int slices() const { return 1; }
-    detail::FootprintSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
+    detail::FootprintSlice all() const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
