@@ -62,24 +62,16 @@ template <class Light, class ToLight> struct Lights {
     /// half axes of a Box, are rounded to nearest, not outward.
     auto view_light(const Light& light) const {
         if constexpr (kind == detail::LightKind::box) {
-            Box box = made(light);
+            const Box box = made(light);
             if (!to_view) return box;
             const Sphere ball = (*to_view)(Sphere{box.x, box.y, box.z, box.radius}),
                          centre = (*to_view)(Sphere{box.box_x, box.box_y, box.box_z, 0});
-            for (float(&axis)[3] : box.half_axes) {
-                const Sphere image = to_view->direction(axis[0], axis[1], axis[2]);
-                axis[0] = image.x;
-                axis[1] = image.y;
-                axis[2] = image.z;
+            Box moved = {ball.x, ball.y, ball.z, ball.radius, centre.x, centre.y, centre.z, {}, box.taper};
+            for (int i = 0; i < 3; ++i) {
+                const Sphere image = to_view->direction(box.half_axes[i][0], box.half_axes[i][1], box.half_axes[i][2]);
+                std::memcpy(moved.half_axes[i], &image, sizeof moved.half_axes[i]);
             }
-            box.x = ball.x;
-            box.y = ball.y;
-            box.z = ball.z;
-            box.radius = ball.radius;
-            box.box_x = centre.x;
-            box.box_y = centre.y;
-            box.box_z = centre.z;
-            return box;
+            return moved;
         } else if constexpr (kind == detail::LightKind::spot) {
             const Spot spot = made(light);
             if (!to_view) return spot;

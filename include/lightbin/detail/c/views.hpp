@@ -135,7 +135,8 @@ lightbin_result lightbin_view_project(const lightbin_view* view, const double* p
     using namespace lightbin::c;
     return call_if(check_pointers({{view, "view"}, {point, "point"}, {image, "image"}}), [&] {
         const auto made = view->value.image_point({point[0], point[1], point[2]});
-        return write_items(&made.x, 3, image, 3, nullptr, "image");
+        std::memcpy(image, &made, sizeof made);
+        return succeeded();
     });
 }
 
@@ -143,7 +144,8 @@ lightbin_result lightbin_view_unproject(const lightbin_view* view, const double*
     using namespace lightbin::c;
     return call_if(check_pointers({{view, "view"}, {image, "image"}, {point, "point"}}), [&] {
         const auto made = view->value.view_point({image[0], image[1], image[2]});
-        return write_items(&made.x, 3, point, 3, nullptr, "point");
+        std::memcpy(point, &made, sizeof made);
+        return succeeded();
     });
 }
 

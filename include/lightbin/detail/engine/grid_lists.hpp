@@ -26,14 +26,14 @@ public:
                                              const ListKernels<Id>& kernels, Buffer<Scratch>& scratch,
                                              [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
-        BinJob<> common = {};
+        BinJob common = {};
         if (const auto error = prepare(how, view, bounds, common)) return error;
         const bool clusters = how.is.slicing == Slicing::clusters;
         std::size_t slices = 1;
         if constexpr (How::may.clusters)
             if (clusters) slices = sliced.slices();
         const auto job_of = [&]([[maybe_unused]] std::size_t slice) {
-            BinJob<> job = common;
+            BinJob job = common;
             FootprintSlice& footprints = job;
             footprints = all;
             if constexpr (How::may.clusters)
@@ -44,7 +44,7 @@ public:
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
-            const BinJob<> job = job_of(slice);
+            const BinJob job = job_of(slice);
             area += job.area;
             if (const auto error = check_list_size(view, job)) return error;
         }
@@ -64,7 +64,7 @@ public:
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, Scratch& memory) {
             std::uint32_t offset = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
-                BinJob<> job = job_of(slice);
+                BinJob job = job_of(slice);
                 job.tiles += slice * tiles;
                 const auto kernel = kernels.choose(isa, view, job.area);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
@@ -77,24 +77,18 @@ public:
             if (count > 1 && area <= max_entries) {
                 scratch.reserve(count, count);
                 const std::span<Share> shares(shares_.reserve(count), count);
-                if constexpr (How::may.clusters)
-                    if (clusters) {
-                        share_steps(shares, slices, empty_row_cost(tiles),
-                                    [&](std::size_t slice) { return job_of(slice).area; });
-                        entries_ = static_cast<std::size_t>(build_shares(
-                            parallel, shares, common.tiles, tiles, share_lists_, list,
-                            [&](const Share& share, std::size_t i, Id* out) {
-                                return build_slices(share.begin, share.end, out, scratch.data()[i]);
-                            }));
-                        return {};
-                    }
-                const BinJob<> job = job_of(0);
+                const BinJob job = job_of(0);
                 const auto kernel = kernels.choose(isa, view, job.area);
-                share_rows(job, parallel, row_sums_, shares);
+                if (clusters)
+                    share_steps(shares, slices, tiles, [&](std::size_t slice) { return job_of(slice).area; });
+                else
+                    share_rows(job, parallel, row_sums_, shares);
                 entries_ = static_cast<std::size_t>(
-                    build_shares(parallel, shares, common.tiles, tiles / rows, share_lists_, list,
+                    build_shares(parallel, shares, common.tiles, tiles / (clusters ? 1 : rows), share_lists_, list,
                                  [&](const Share& share, std::size_t i, Id* out) {
-                                     return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
+                                     Scratch& memory = scratch.data()[i];
+                                     return clusters ? build_slices(share.begin, share.end, out, memory)
+                                                     : kernel(job, memory, {share.begin, share.end, out, 0});
                                  }));
                 return {};
             }
@@ -111,7 +105,7 @@ private:
 
     /// Sets the camera, the Z bounds and the tiles' edges, which the jobs of all slices have in common.
     std::optional<Error> prepare([[maybe_unused]] const How& how, const View& view, const ZBounds& bounds,
-                                 BinJob<>& common) {
+                                 BinJob& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);
         const std::span<const float> sides[] = {bounds.min, bounds.max};
@@ -127,7 +121,7 @@ private:
 
     /// Finds the edges of all columns and rows of tiles, from which the depth test makes boxes around cells. Zeros
     /// follow the edges, as whole vectors are read.
-    void find_edges(BinJob<>& common) {
+    void find_edges(BinJob& common) {
         const ImageAxis* axes[] = {&common.camera->x, &common.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {
             const std::size_t count = static_cast<std::size_t>(axes[i]->tiles), capacity = count + SlabBoxes::padding;

@@ -24,10 +24,12 @@ template <class Source> std::optional<Error> refuse(const Source& source, std::u
     return error;
 }
 
-/// Returns into how many parts an array of lights is divided to be projected. It is 1 where the padding behind each
-/// part's run of footprints could push indices beyond 32 bits.
+/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is lost
+/// where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding behind
+/// each part's run of footprints could push indices beyond 32 bits.
 inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
-    return lights >> 31 == 0 ? project_parts(lights / ChunkRects::size + 1, parallel.workers()) : 1;
+    const std::size_t chunks = lights / ChunkRects::size + 1, workers = parallel.workers();
+    return workers > 1 && lights >> 31 == 0 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
 }
 
 /// Writes the lights that `lights`, a Lights, makes of its array. LightSource::copy points to this function.

@@ -72,7 +72,7 @@ template <class Id> struct ListKernels {
     /// Returns the kernel for one slice: the fastest for lights whose rectangles have `area` tiles in all.
     BinKernel<Id> (*choose)(Isa isa, const View& view, std::uint64_t area);
     /// Returns how many entries the lists of one slice have. Null without a depth test.
-    std::uint64_t (*count)(const BinJob<>& slice, Scratch& scratch);
+    std::uint64_t (*count)(const BinJob& slice, Scratch& scratch);
 };
 
 /// Returns the kernels for lights of the kind `kind`. With clusters and a depth test, spheres and spots are tested
@@ -80,7 +80,7 @@ template <class Id> struct ListKernels {
 template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr ListKernels<Id> list_kernels() {
     constexpr bool by_slab = clusters && depth_test && kind != LightKind::box;
     if constexpr (depth_test)
-        return {bin_kernel<true, Id, by_slab, kind>, least::count_entries<true, by_slab, kind, std::uint32_t>};
+        return {bin_kernel<true, Id, by_slab, kind>, least::count_entries<by_slab, kind>};
     else
         return {bin_kernel<false, Id, false, LightKind::sphere>, nullptr};
 }
