@@ -292,7 +292,7 @@ static void test_binners(void) {
     options = options_given(1, LIGHTBIN_NO_SLICING);
     options.isa = -1;
     CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.isa"));
-    for (options.isa = LIGHTBIN_AVX512 + 1; options.isa > lightbin_machine_isa(); --options.isa)
+    for (options.isa = LIGHTBIN_AVX512 + 1; options.isa > (int32_t)lightbin_machine_isa(); --options.isa)
         CHECK(refuses(lightbin_binner_create(&options, &binner),
                       options.isa > LIGHTBIN_AVX512 ? LIGHTBIN_NOT_A_VALUE : LIGHTBIN_NO_SUCH_ISA, "options.isa"));
     CHECK(binner == NULL);

@@ -23,7 +23,7 @@
 #define LIGHTBIN_NO_CULL_SHADERS 1
 #endif
 #if defined(LIGHTBIN_NO_CLUSTERS) && defined(LIGHTBIN_NO_Z_BINS) && defined(LIGHTBIN_NO_CULL_SHADERS)
-#define LIGHTBIN_NO_SLICES 1
+#define LIGHTBIN_WITHOUT_SLICES 1
 #endif
 
 #include <lightbin/detail/c/grids.hpp>

@@ -59,7 +59,7 @@ inline lightbin_result read_bounds(const lightbin_z_bounds* from, const View& vi
     return check_bounds({given.min, given.max}, given.tiles, view, "inputs.bounds");
 }
 
-#if !defined(LIGHTBIN_NO_SLICES)
+#if !defined(LIGHTBIN_WITHOUT_SLICES)
 /// Makes a handle of the slices that make() returns.
 template <class Make>
 lightbin_result make_slices(float margin, const lightbin_result& checked, lightbin_slices** slices, const Make& make) {
@@ -163,7 +163,7 @@ double lightbin_view_window_depth(const lightbin_view* view, double view_depth) 
     return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<double>::quiet_NaN();
 }
 
-#if !defined(LIGHTBIN_NO_SLICES)
+#if !defined(LIGHTBIN_WITHOUT_SLICES)
 lightbin_result lightbin_slices_exponential(std::int32_t count, float first, float last, float margin,
                                             lightbin_slices** slices) {
     using namespace lightbin::c;
