@@ -12,7 +12,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Which options there is code for.
+/// Which options the program has code for.
 struct OptionCode {
     bool u16, u32, depth_test, clusters, z_bins;
 };
@@ -35,8 +35,10 @@ template <Options options> struct FixedHow {
     }
 };
 
-/// How  a FixedHow, or a struct with the same members. Each of them may be a constant or depend on the object `how`, but
-///      `may` is constant: no code is compiled for what it denies.
+/// The stages, and the memory that they keep from call to call.
+///
+/// How  a FixedHow, or a struct with the same members, of which `is` may be set at run time. `may` is constant: no code is
+///      compiled for what it denies
 template <class How> class Stages {
     struct Nothing {};
     template <bool is_held, class T> using Held = std::conditional_t<is_held, T, Nothing>;
