@@ -148,7 +148,7 @@ lightbin_result with_threads(lightbin_result checked, const lightbin_threads* gi
 #endif
 }
 
-/// Returns why an input of a binner is refused, which must be given if the options read it, and else must not be.
+/// Returns why an input is refused that must be given if the options read it, and else must not be.
 inline lightbin_result check_input(bool is_read, const void* given, lightbin_error if_missing, const char* name) {
     if (is_read == (given != nullptr)) return succeeded();
     return refused(is_read ? if_missing : LIGHTBIN_NOT_READ, name);

@@ -53,16 +53,12 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
     lightbin::CullPass pass = {};
     lightbin::CullShaderOptions known;
     lightbin::Matrix matrix;
-    // Returns why an input is refused that must be there if it is read, and else must not be.
-    const auto check_input = [](bool is_read, const void* given, const char* name) {
-        if (is_read == (given != nullptr)) return succeeded();
-        return refused(is_read ? LIGHTBIN_NULL_ARGUMENT : LIGHTBIN_NOT_READ, name);
-    };
     lightbin_result result = first_error(check_pointers({{view, "view"}}), read_cull_options(options, pass, known),
                                          check_size(plan, "plan"));
     if (result.error == LIGHTBIN_OK)
-        result = first_error(check_input(known.slicing != lightbin::Slicing::none, slices, "slices"),
-                             check_input(known.world_space, to_view, "to_view"));
+        result = first_error(
+            check_input(known.slicing != lightbin::Slicing::none, slices, LIGHTBIN_NULL_ARGUMENT, "slices"),
+            check_input(known.world_space, to_view, LIGHTBIN_NULL_ARGUMENT, "to_view"));
     if (result.error == LIGHTBIN_OK && to_view != nullptr) result = read_member(*to_view, matrix, "to_view");
     return call_if(result, [&] {
         const auto made = lightbin::plan_cull(view->value, known, {lights, entries},
