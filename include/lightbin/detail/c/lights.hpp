@@ -168,15 +168,18 @@ struct CallLights {
         const auto of = [this]<class Given>(const Given& from) {
             return Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr};
         };
+        const auto join = []<class First, class Rest>(const First& first, const Rest& rest) {
+            return JoinedLights<First, Rest>{first, rest};
+        };
         const auto spheres = of(given.spheres);
         if constexpr (spheres_alone)
             return spheres;
         else if constexpr (!detail::kinds_have_boxes)
-            return JoinedLights{spheres, of(given.spots)};
+            return join(spheres, of(given.spots));
         else if constexpr (!detail::kinds_have_spots)
-            return JoinedLights{spheres, of(given.boxes)};
+            return join(spheres, of(given.boxes));
         else
-            return JoinedLights{spheres, JoinedLights{of(given.spots), of(given.boxes)}};
+            return join(spheres, join(of(given.spots), of(given.boxes)));
     }
 };
 
