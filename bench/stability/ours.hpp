@@ -64,7 +64,7 @@ inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, con
 inline Projected project(const lightbin::View& view, const Scene& scene) {
     const lightbin::Isa widest = lightbin::machine_isa();
     const Projected all = project_with(widest, view, scene);
-    for (int i = 0; i < static_cast<int>(widest); ++i) {
+    for (int i = static_cast<int>(lightbin::Isa::scalar); i < static_cast<int>(widest); ++i) {
         const auto isa = static_cast<lightbin::Isa>(i);
         if (lightbin::machine_isa(isa) == isa && project_with(isa, view, scene).rects != all.rects)
             throw std::logic_error(std::string(to_string(isa)) + " and " + to_string(widest) + " differ");
