@@ -15,7 +15,7 @@ oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
-javascript="emscripten node-acorn binaryen nodejs node-typescript"
+javascript="emscripten node-acorn binaryen esbuild nodejs node-typescript"
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
 install_packages $tools $libraries $oracle $examples $renderers $opengl $javascript $shaders

@@ -12,7 +12,7 @@ flags = -std=c++20 -fwasm-exceptions -Wall -Wextra -Werror \
     -DTINYGLTF_NO_FS -DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE -DTINYGLTF_NO_EXTERNAL_IMAGE \
     $(headers) -isystem $(objects)/include -O2
 headers := -Iinclude -Iexamples/tiled_forward -I$(here)/module
-package := lightbin.js tables.js lightbin.wasm lightbin_simd.wasm shaders.wasm
+package := lightbin.js lightbin.wasm lightbin_simd.wasm shaders.wasm
 shared := gpu_light load_glb made_scene made_street moving_lights projection
 sources := $(wildcard $(here)/module/*.cpp) $(shared:%=examples/tiled_forward/%.cpp)
 compiled := $(patsubst %.cpp,$(objects)/%.o,$(notdir $(sources)))
