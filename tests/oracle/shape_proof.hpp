@@ -94,6 +94,7 @@ public:
     /// Lists of these tiles lack a light: it must not meet their cell.
     void ask(std::size_t i, const Block& tiles, const Examiner::Cell& cell, const std::string& rung,
              const std::string& set) {
+        if (tally_.misses > 20) return;  // rationals take long, and nothing is left to prove
         ++tally_.verdicts;
         ShapeTally::Set& of_set = tally_.sets[set];
         if (cell.empty || examiner_.apart(tiles, cell, balls_[i]) ||
