@@ -240,6 +240,23 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
     return scene;
 }
 
+/// A light a few pixels wide, tangent to the edge of a one-pixel tile.
+inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
+    const double d = aim.depth(random), at = std::max(d, aim.unit);
+    // The radius whose image is a pixel: far off the axis an image is longer.
+    double pixel = oracle::infinite, c[2], edge[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        edge[axis] = aim.tile_edge(axis, random);
+        c[axis] = aim.at(axis, edge[axis], at);
+        pixel = std::min(pixel, (aim.at(axis, edge[axis] + 1, at) - c[axis]) /
+                                    std::hypot(1, aim.slope(axis, edge[axis])));
+    }
+    const int axis = random.integer(0, 1);
+    const double r = std::min(pixel * random.power_of_two(-8, std::log2(most_pixels)), at / 4);
+    c[axis] += random.sign() * r * std::hypot(1, aim.slope(axis, edge[axis]));
+    return nudged(aim.light(c[0], c[1], at, r), random);
+}
+
 inline Scene tile_count(Random& random, double tiles, std::size_t lights) {
     const int side = static_cast<int>(tiles), other = std::min(side, 16);
     const bool wide = random.chance(0.5);
@@ -248,7 +265,7 @@ inline Scene tile_count(Random& random, double tiles, std::size_t lights) {
     Scene scene = scene_of(lens, {wide ? side : other, wide ? other : side, 1, false});
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < lights; ++i)
-        scene.lights.push_back(oracle::families::pixel_light(aim, random, 8));
+        scene.lights.push_back(pixel_light(aim, random, 8));
     return scene;
 }
 

@@ -8,8 +8,8 @@
 #include "formulas.hpp"
 #include "ours.hpp"
 
-#include "../../tests/oracle/flush.hpp"
 #include "../../tests/oracle/library_view.hpp"
+#include "../../tests/platforms/environments.hpp"
 
 #include <lightbin/binner.hpp>
 
@@ -228,7 +228,7 @@ private:
         for (std::size_t i = 0; i < 16; ++i)
             turns.push_back(family_.make(random_, value_, effort_.lights_in_turn / 16));
         // Exact numbers are made of integers: they don't feel it.
-        const oracle::Flush flushing(family_.flush);
+        const Environment flushing({.name = "flushing", .flushes = family_.flush});
         for (const Scene& scene : scenes)
             screen(scene);
         time_ours(turns);

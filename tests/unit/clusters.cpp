@@ -1,5 +1,5 @@
 // Slices, and clusters as shaders look them up. That clusters miss no light, and what they list beyond it, is proven in
-// tests/oracle/clusters.cpp.
+// tests/oracle/spheres.cpp.
 #include "scene.hpp"
 
 #include <glm/common.hpp>
