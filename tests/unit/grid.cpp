@@ -38,32 +38,6 @@ TEST_CASE("16-bit ids are the same ids") {
     CHECK(test::lists<Options{.ids = IdWidth::u16}>(view, lights) == test::lists(view, lights));
 }
 
-TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
-    const View view = test::view({320, 256}, 32);
-    const std::size_t tiles = view.tile_count();
-    const std::vector<glm::vec4> lights = {{0, 0, -5, 1}, {0, 0, 0, HUGE_VALF}};
-    const auto everywhere = test::lists(view, lights);
-    const std::vector<float> nan(tiles, std::nanf("")), inf(tiles, HUGE_VALF), minus_inf(tiles, -HUGE_VALF);
-    CHECK(test::lists<tested>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
-    CHECK(test::lists<tested>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
-    CHECK(test::entries(test::lists<tested>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
-          0);  // empty tiles
-    CHECK(test::entries(test::lists<tested>(view, lights, ZBounds{.min = inf, .max = inf})) ==
-          tiles);  // the infinite one
-
-    // A tile of NaN among others of which all are in front of the light, or behind it.
-    const std::size_t middle = 45;  // of 10 x 8
-    REQUIRE(everywhere[middle].size() == 2);
-    for (const float depth : {2.0f, 8.0f}) {
-        std::vector<float> min(tiles, depth), max(tiles, depth + 1);
-        min[middle] = max[middle] = std::nanf("");
-        const auto lists =
-            test::lists<tested>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
-        CHECK(lists[middle].size() == 1);
-        CHECK(test::entries(lists) == 1);
-    }
-}
-
 TEST_CASE("what became of the lights, and how long the lists are") {
     const View view = test::view({960, 540}, 16);
     auto lights = test::random_lights(150, 23);

@@ -50,13 +50,6 @@ template <class Visit> void on_machine_tiers(Visit visit) {
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }
-/// Such as "scalar simd128 avx2".
-inline std::string tier_names() {
-    std::string all;
-    for (const lightbin::Isa isa : machine_tiers())
-        all += (all.empty() ? "" : " ") + std::string(lightbin::to_string(isa));
-    return all;
-}
 
 /// A thread a body: what a Parallel may be given.
 inline const auto on_threads = [](std::size_t n, auto body) {
