@@ -18,7 +18,7 @@ fetch_npm $tests playcanvas@2.23.0 playwright-core@1.65.1
 modules=$PWD/$tests/node_modules
 export PLAYCANVAS="$modules/playcanvas" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 case ${1-} in
---serve) exec node tests/three/server.mjs 8000 tests/playcanvas ;;
+--serve) exec node tests/server.mjs 8000 tests/playcanvas ;;
 --bench) exec node tests/playcanvas/bench.mjs ;;
 esac
 run_node_tests tests/playcanvas/pictures.mjs $tests/pictures.log

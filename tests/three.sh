@@ -19,7 +19,7 @@ fetch_npm $tests three@0.187.0 playwright-core@1.65.1
 modules=$PWD/$tests/node_modules
 export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 case ${1-} in
---serve) exec node tests/three/server.mjs 8000 ;;
+--serve) exec node tests/server.mjs 8000 tests/three ;;
 --bench) exec node tests/three/bench.mjs ;;
 esac
 run_node_tests tests/three/pictures.mjs $tests/pictures.log

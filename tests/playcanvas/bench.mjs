@@ -2,10 +2,10 @@
 // node tests/playcanvas/bench.mjs: PlayCanvas' own clustered lights and lightbin's, with the same lights in turns in
 // one page, all of them in view. The time of lists is that of all that PlayCanvas does in a frame for its clusters: find
 // the lights, write them and the lists, upload both.
-import {open} from './browser.mjs';
+import {open} from '../browser.mjs';
 
 const scenes = [[349, [10, 3, 10]], [1411, [32, 4, 32]], [3589, [32, 4, 32]]], frames = 300;
-const {page, close, complaints} = await open();
+const {page, close, complaints} = await open(new URL('.', import.meta.url), 'Stage');
 const rows = await page.evaluate(async ([scenes, frames]) => {
     const stages = {}, kinds = ['own', 'lists', 'all'], rows = [];
     for (const kind of kinds) {

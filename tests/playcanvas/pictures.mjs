@@ -2,11 +2,11 @@
 // node --test tests/playcanvas/pictures.mjs: the adapter for PlayCanvas in headless Chromium.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {open} from './browser.mjs';
+import {open, same} from '../browser.mjs';
 
 let browser, page;
 before(async () => {
-    browser = await open();
+    browser = await open(new URL('.', import.meta.url), 'Stage');
     page = browser.page;
     await page.evaluate(async () => {
         window.stages = {};
@@ -25,12 +25,6 @@ after(async () => {
     await browser.close();
     assert.deepEqual(browser.complaints, []);
 });
-
-function same({most, mean, length}, what, apart = 0) {
-    assert.ok(mean > 5, `${what}: the picture is dark: ${mean}`);
-    assert.equal(length, 0);
-    assert.ok(most <= apart, `${what}: ${most} of 255 apart`);
-}
 
 // Where PlayCanvas lists all lights it adds the same ones in the same order, but by another program.
 for (const [points, spots] of [[70, 30], [300, 49]])

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // node bench.mjs: frames of three.js' own lights and of the adapter's, in turns, in headless Chromium. THREE, LIGHTBIN
 // and PLAYWRIGHT are the folders of these packages.
-import {open} from './browser.mjs';
+import {open} from '../browser.mjs';
 
-const browser = await open();
+const browser = await open(new URL('.', import.meta.url), 'stage');
 browser.page.setDefaultTimeout(0);
 const renderer = await browser.page.evaluate(async () => {
     // Two scenes, each with the materials of its own.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// node tests/web/lists.mjs FOLDER: what the page in FOLDER makes of its scenes with the npm package: what the GPU makes
-// lists of, sentences where something is wrong, and files that are small enough for a page.
+// node tests/web/lists.mjs FOLDER: the page in FOLDER says what is wrong in sentences, keeps no memory, and is small.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -55,24 +54,6 @@ function sentences() {
     return `${new Set(asked).size} mistakes are sentences, and the scene lives on`;
 }
 
-// What the GPU lists lights by: as many cells as the CPU's table has ranges, and memory for each buffer.
-async function plans_for_gpu() {
-    const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]};
-    for (const method of ['none', 'z_bounds', 'clusters']) {
-        const frame = await lighting.gpu_frame({...seen, method}, 5000, 7000), {plans, lights, shapes, edges} = frame;
-        const bounds = {min: new Float32Array(920), max: new Float32Array(920).fill(60)};
-        const {ranges, slices} = lighting.frame({...seen, method}, bounds);
-        assert.equal(frame.cells, ranges.length / 2, method);
-        assert.deepEqual(frame.slices, slices);
-        assert.deepEqual([edges.length, shapes.length], [2 * (40 + 23), 8 * 1500]);
-        for (let i = 0; i < 1500; ++i)
-            assert.deepEqual(shapes.subarray(8 * i, 8 * i + 4), lights.subarray(12 * i, 12 * i + 4));
-        assert.deepEqual(plans.map(({bytes: {tiles, lists}}) => [tiles, lists]),
-            [[4 * ranges.length, 20000], [4 * ranges.length, 28000]]);
-    }
-    return 'the GPU gets the same lights and slices';
-}
-
 function small() {
     const sizes = fs.readdirSync(folder, {recursive: true}).map(name => fs.statSync(path.join(folder, name)))
         .filter(file => file.isFile()).map(file => file.size), sum = sizes.reduce((a, b) => a + b);
@@ -90,5 +71,5 @@ function frees() {
     return `${live} blocks of memory are kept`;
 }
 
-for (const test of [no_scene, sentences, plans_for_gpu, small, frees])
+for (const test of [no_scene, sentences, small, frees])
     console.log(`lists: ${await test()}`);
