@@ -268,6 +268,33 @@ test('it throws nothing out of render(): what has no lists is said once, and aft
     same(result);
 });
 
+test('workers make the same lists, of the module that they were sent or load themselves', async () => {
+    const lists = await page.evaluate(async () => {
+        const {lightbin, camera} = stage, made = [];
+        const text = `import {load} from '${location.origin}/lightbin/lightbin.js';
+            onmessage = async ({data: {options, view, spheres}}) => {
+                const lightbin = await load(options), grid = lightbin.binner().bin(lightbin.view(view), {spheres});
+                postMessage([...grid.ranges, ...grid.ids].join());
+            };`;
+        const address = URL.createObjectURL(new Blob([text], {type: 'text/javascript'}));
+        const view = {projection: [...camera.projectionMatrix.elements], width: 320, height: 200}, array = [];
+        for (let i = 0; i < 500; ++i) array.push(i % 23 - 11, i % 13 - 6, -1 - i % 41, 0.5 + i % 3);
+        for (const options of [{wasm: lightbin.module}, {}, {simd: false}]) {
+            const worker = new Worker(address, {type: 'module'});
+            worker.postMessage({options, view, spheres: {array}});
+            made.push(await new Promise((resolve, reject) => {
+                worker.onmessage = ({data}) => resolve(data);
+                worker.onerror = ({message}) => reject(new Error(message));
+            }));
+            worker.terminate();
+        }
+        const {ranges, ids} = lightbin.binner().bin(lightbin.view(view), {spheres: {array}});
+        return [...made, [...ranges, ...ids].join()];
+    });
+    assert.ok(lists[0].length > 1000);
+    assert.equal(new Set(lists).size, 1);
+});
+
 test('an option that is misspelt or wrong is named', async () => {
     const messages = await page.evaluate(async () => {
         const {ClusteredLights} = await import('lightbin/three');
