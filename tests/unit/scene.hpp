@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <string>
 #include <thread>
@@ -110,14 +109,6 @@ inline Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t bo
         kinds.boxes.push_back(box);
     }
     return kinds;
-}
-
-/// Of how many random cases of the same kind one is to be run: LIGHTBIN_TEST_SHARE, such as 16 in an emulator, which is
-/// slow, and 1 where there is time. No kind is left out.
-inline std::uint32_t share_of_cases(std::uint32_t otherwise) {
-    const char* const asked = std::getenv("LIGHTBIN_TEST_SHARE");
-    const int share = asked ? std::atoi(asked) : 0;
-    return share > 0 ? static_cast<std::uint32_t>(share) : otherwise;
 }
 
 /// One list of ids a tile.

@@ -1,5 +1,5 @@
-// The snippet's text: what is off leaves no line, and sentences name limits. That it compiles and reads the right lists is
-// tested in tests/shader, that what can't be is refused, and why, in tests/fuzz/shader.cpp.
+// The snippet's text: what is off leaves no line, and sentences name limits. That it compiles and reads the right lists
+// is tested in tests/shader, that what can't be is refused, and why, in tests/fuzz/shader.cpp.
 #include <doctest/doctest.h>
 
 #include <lightbin/shader.hpp>

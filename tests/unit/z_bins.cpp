@@ -133,17 +133,3 @@ TEST_CASE("z-bins of no light are empty, and so they are after a scene of many")
         check_bins(*grid, lights, slices);
     }
 }
-
-TEST_CASE("a copy of a grid of ranks has its ranks") {
-    const View view = test::view({64, 64}, 16);
-    const Slices slices = *Slices::linear(16, 0, 100);
-    Binner<Options{.slicing = Slicing::z_bins}> binner;
-    const auto grid = binner.bin(view, test::random_lights(50, 7), {.slices = slices});
-    REQUIRE(grid);
-    std::vector<ListRange> ranges(grid->ranges().size());
-    std::vector<std::uint32_t> ids(grid->ids().size());
-    const auto copy = grid->copy_to(ranges, ids);
-    REQUIRE(copy);
-    CHECK(copy->ranks().order.data() == grid->ranks().order.data());
-    CHECK(copy->ranks().bins.size() == 16);
-}
