@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Applications of PlayCanvas beside each other, which draw the same scene under the same moving lights. By itself the
-// page shows 5,000 lights with PlayCanvas' own clusters and with lightbin's lists; pictures.mjs and bench.mjs make
-// stages of their own. An address with #still draws nothing until then.
+// page shows 5,000 lights with PlayCanvas' own clusters and with lightbin's lists; pictures.mjs makes stages of its own.
+// An address with #still draws nothing until then.
 import {load} from 'lightbin';
 import {ClusteredLights} from 'lightbin/playcanvas';
 import * as pc from 'playcanvas';
@@ -111,14 +111,13 @@ class Stage {
 
     resize(width, height) { this.app.setCanvasResolution(pc.RESOLUTION_FIXED, width, height); }
 
-    /// Puts `points` and then `spots` lights in the place of those that there are, or both by turns if `mixed`, over a
-    /// square of 2 `extent` a side.
-    lights(points, spots, {range = 4, extent = 14, strength = 1, mixed = false} = {}) {
+    /// Puts `points` and then `spots` lights in the place of those that there are, over a square of 2 `extent` a side.
+    lights(points, spots, {range = 4, extent = 14, strength = 1} = {}) {
         seed(1);
         for (const lamp of this.lamps) lamp.destroy();
         this.lamps = [];
         for (let i = 0; i < points + spots; ++i) {
-            const outer = random(15, 60), is_spot = mixed ? i * spots % (points + spots) < spots : i >= points;
+            const outer = random(15, 60), is_spot = i >= points;
             const lamp = this.entity('light', {
                 type: is_spot ? 'spot' : 'omni', range: random(0.5, 1) * range * (is_spot ? 2 : 1),
                 color: new pc.Color(random(0.2, 1), random(0.2, 1), random(0.2, 1)),

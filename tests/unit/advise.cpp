@@ -232,25 +232,6 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
     }
 }
 
-TEST_CASE("in slices, any input") {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<Sphere> bad = {{nan, 0, 0, 1}, {0, 0, -9, unbounded}, {0, 0, 0, 1e30f}};
-    const std::vector<float> depths = {nan, unbounded, -unbounded, -5, 0, 3e38f};
-    for (const Extent size : {Extent{0, 0}, {1, 1}, {640, 1}, {300, 200}})
-        for (const Extent samples : {Extent{0, 0}, {-1, -1}, {3, 2}, {1, 1}}) {
-            const View view = test::view(size, 16);
-            advised_in_slices(view, bad, {.depths = depths, .size = samples});
-            const Advice empty = advised_in_slices(view, std::vector<Sphere>{}, {});
-            for (const Plan& plan : empty.plans())
-                CHECK(plan.evaluations == 0);
-        }
-    const Slices slices = *Slices::linear(3, 0, 9);
-    const auto advice = advise_slices(test::view({64, 64}, 16), bad, {.clusters = slices, .z_bins = slices},
-                                      {.depths = depths, .size = {3, 3}});
-    REQUIRE(!advice);
-    CHECK(advice.error().code == ErrorCode::depth_buffer_too_small);
-}
-
 TEST_CASE("entries and evaluations are those of the plans' grids") {
     const View view = test::view({611, 397}, 8);
     const std::vector<float> depth = ground_depth({611, 397});
@@ -416,14 +397,14 @@ std::vector<bool> techniques_of(const Plan& plan) {
     return {says(" px,"), tested && !sliced, tested, sliced, says(" z_bins,")};
 }
 
-constexpr const char* names[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ", "z-bins       "};
+constexpr const char* padded[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ", "z-bins       "};
 
 /// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's.
 void check_verdicts(const Advice& advice) {
     for (const Plan& plan : advice.plans()) {
         std::string lines;
         const std::vector<Verdict> verdicts = advice.verdicts(plan);
-        REQUIRE(verdicts.size() == std::size(names));
+        REQUIRE(verdicts.size() == std::size(padded));
         for (std::size_t i = 0; i < verdicts.size(); ++i) {
             const auto& [part, keep, other, instead, saved_ns] = verdicts[i];
             double least = HUGE_VAL;
@@ -441,8 +422,8 @@ void check_verdicts(const Advice& advice) {
                               left_out[] = {"leave out: was not weighed", "leave out: would cost ",
                                             "leave out: would save only "};
             const std::string& says = (keep ? kept : left_out)[!weighed ? 0 : saved_ns >= 0 ? 1 : 2];
-            CHECK(names[i] == part + std::string(13 - part.size(), ' '));
-            CHECK(line.starts_with(names[i] + says));
+            CHECK(padded[i] == part + std::string(13 - part.size(), ' '));
+            CHECK(line.starts_with(padded[i] + says));
             CHECK(line.ends_with(weighed ? " instead: " + instead + "\n" : "weighed\n"));
             CHECK(line.find(" -") == line.npos);
             CHECK(line.size() <= 100);
@@ -481,12 +462,15 @@ TEST_CASE("any input") {
     const std::vector<Sphere> bad = {{nan, 0, 0, 1},          {0, 0, -9, -1},   {0, 0, -9, unbounded},
                                      {0, 0, -9, 0},           {0, 0, 0, 1e30f}, {1e30f, 0, -1e38f, 1},
                                      {0, nan, unbounded, nan}};
-    const std::vector<float> nothing(100000, nan), ones(100000, 1.0f), zeros(100000, 0.0f);
+    const std::vector<float> nothing(100000, nan), ones(100000, 1.0f), zeros(100000, 0.0f),
+        depths = {nan, unbounded, -unbounded, -5, 0, 3e38f};
     for (const Extent size : {Extent{0, 0}, {0, 50}, {1, 1}, {640, 1}, {300, 200}, {32768, 2}})
         for (const int tile : {1, 8, 100, 40000, std::numeric_limits<int>::max()}) {
             const View view = test::view(size, tile);
             advised(view, bad);
             advised(view, std::vector<Sphere>{});
+            for (const Extent samples : {Extent{0, 0}, {-1, -1}, {3, 2}, {1, 1}})
+                advised_in_slices(view, bad, {.depths = depths, .size = samples});
             advised(view, bad, {}, {.min = nothing, .max = nothing});
             advised(view, bad, {}, {.min = nothing});
             const Advice empty = advised(view, bad, {}, {.min = ones, .max = zeros});
@@ -497,6 +481,9 @@ TEST_CASE("any input") {
     const View view = test::view({1000, 700}, 32);
     const std::vector<float> few(view.tile_count() - 1);
     CHECK(advise(view, bad, {}, {.max = few}).error().code == ErrorCode::z_bounds_too_small);
+    const auto too_few =
+        advise_slices(view, bad, {.clusters = a_dozen, .z_bins = hundred}, {.depths = depths, .size = {3, 3}});
+    CHECK(too_few.error().code == ErrorCode::depth_buffer_too_small);
     const float projective[4][4] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {5, 0, 0, 1}};
     CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
     const std::vector<Sphere> many(65537, Sphere{0, 0, 9, 1});

@@ -8,8 +8,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include <functional>
-
 using namespace lightbin;
 
 namespace {
@@ -17,41 +15,6 @@ namespace {
 glm::vec3 random_vector(std::mt19937& random) {
     std::uniform_real_distribution<float> unit(-1, 1);
     return {unit(random), unit(random), unit(random)};
-}
-
-/// In and around the view: whole boxes and cut balls, some flat, some sheared, some tapered, some bad.
-std::vector<Box> random_boxes(std::size_t count, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::vector<Box> boxes;
-    for (const glm::vec4& s : test::random_lights(count, seed)) {
-        const glm::vec3 centre(s), x = s.w * random_vector(random), y = s.w * random_vector(random),
-                                   z = s.w * random_vector(random);
-        const Sphere ball = {s.x, s.y, s.z, s.w};
-        switch (boxes.size() % 8) {
-        case 0:
-            boxes.push_back(whole_box(centre, x, glm::cross(x, y) / s.w, glm::vec3(0)));
-            break;
-        case 1:
-            boxes.push_back(projector_box(centre, x, y, z, 0.1));
-            break;
-        case 2:
-            boxes.push_back(half_sphere(ball, x));
-            break;
-        case 3:
-            boxes.push_back(clipped_sphere(ball, whole_box(centre + y, x, y, z)));
-            break;
-        case 4:
-            boxes.push_back(tube_box(centre, centre + x, 0.2f * s.w));
-            break;
-        case 5:
-            boxes.push_back(whole_box(centre, x, y, z));
-            boxes.back().radius = boxes.size() % 3 == 0 ? -1.0f : HUGE_VALF;
-            break;
-        default:
-            boxes.push_back(whole_box(centre, x, y, z));
-        }
-    }
-    return boxes;
 }
 
 /// Whether a point is in the sphere and the box of a Box, give or take a thousandth of its size.
@@ -67,7 +30,7 @@ bool contains(const Box& box, const glm::vec3& p) {
 }  // namespace
 
 TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower one leaves out") {
-    const std::vector<Box> boxes = random_boxes(400, 5);
+    const std::vector<Box> boxes = test::random_kinds(0, 0, 400, 5).boxes;
     std::vector<Sphere> spheres;
     for (const Box& box : boxes)
         spheres.push_back(bounding_sphere(box));
@@ -77,9 +40,9 @@ TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower
 TEST_CASE("an affine matrix makes of a box the box of the transformed half axes") {
     const View view = test::view({641, 361}, 16);
     const glm::mat4 m = glm::mat4(1, 0.3f, 0, 0, 0.5f, -1, 0.1f, 0, 0.4f, 0, 2, 0, 1, 2, 3, 1);
-    std::vector<Box> boxes = random_boxes(300, 8), moved;
+    std::vector<Box> boxes = test::random_kinds(0, 0, 300, 8).boxes, moved;
     for (Box& box : boxes) {
-        if (box.radius > 0) box.radius = HUGE_VALF;  // the image of a sphere is none
+        box.radius = HUGE_VALF;  // the image of a sphere is none
         const auto image = [&](float x, float y, float z, float w) { return m * glm::vec4(x, y, z, w); };
         moved.push_back(box);
         const glm::vec4 c = image(box.box_x, box.box_y, box.box_z, 1);

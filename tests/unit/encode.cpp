@@ -120,7 +120,7 @@ TEST_CASE("what a format can't hold is an error that tells what it would take, a
     CHECK(with_largest(9, {.ids = IdWidth::u32}, 15).find("holds 15 bytes and 16") != std::string::npos);
     for (const std::size_t size : {0u, 4096u})
         CHECK(with_largest(9, {.encoding = ListEncoding::sentinel}, size) ==
-              Error{ErrorCode::capacity_unknown}.message());
+              std::string(Error{ErrorCode::capacity_unknown}.message()));
 }
 
 TEST_CASE("sizes are exact as far as 64 bits count, and do not wrap beyond") {

@@ -1,5 +1,5 @@
-// Grids of View::max_side tiles each way, where a tile's number just fits what a kernel counts in, and more lights than 16
-// bits number: every tier, serially and in parts, against the rectangles and discs that the lights are.
+// Grids of View::max_side tiles each way, where a tile's number just fits what a kernel counts in, and more lights than
+// 16 bits number: every tier, serially and in parts, against the rectangles and discs that the lights are.
 #include "scene.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module of examples/web hands the lights to the page that the renderer of examples/tiled_forward has. That the page's
-// lists lack none is seen in its pictures: tests/web/pictures.mjs.
+// The module of examples/web hands the lights to the page that the renderer of examples/tiled_forward has. That the
+// page's lists lack none is seen in its pictures: tests/web/pictures.mjs.
 #include "binned_lights.hpp"
 #include "moving_lights.hpp"
 #include "stage.hpp"
