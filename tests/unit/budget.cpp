@@ -2,10 +2,8 @@
 #include "scene.hpp"
 
 #include <lightbin/budget.hpp>
-#include <lightbin/encode.hpp>
 
 #include <limits>
-#include <tuple>
 
 using namespace lightbin;
 

@@ -2,10 +2,6 @@
 // tests/oracle/clusters.cpp.
 #include "scene.hpp"
 
-#include <glm/common.hpp>
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/geometric.hpp>
-
 #include <limits>
 
 using namespace lightbin;

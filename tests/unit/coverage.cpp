@@ -6,18 +6,11 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
-#include <cstring>
 #include <limits>
 
 using namespace lightbin;
 
 namespace {
-
-bool same(const std::vector<LightCoverage>& a, const std::vector<LightCoverage>& b) {
-    static_assert(sizeof(LightCoverage) == 24);  // no padding, whose bytes could differ
-    return a.size() == b.size() &&
-           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
-}
 
 /// The lights that a grid lists, and the rectangle of each, from the lists alone.
 template <class Id>

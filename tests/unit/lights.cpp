@@ -1,8 +1,6 @@
 // The ways lights come in: they must all give the same grid.
 #include "scene.hpp"
 
-#include <doctest/doctest.h>
-
 #include <glm/ext/matrix_transform.hpp>
 
 #include <array>
@@ -11,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <random>
-#include <type_traits>
 #include <vector>
 
 using namespace lightbin;

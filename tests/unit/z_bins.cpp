@@ -2,7 +2,6 @@
 #include "scene.hpp"
 
 #include <limits>
-#include <numeric>
 
 using namespace lightbin;
 
