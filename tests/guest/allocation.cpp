@@ -6,11 +6,22 @@
 #include <lightbin/grid_union.hpp>
 
 #include <cstddef>
+#include <random>
 #include <vector>
 
 namespace {
 
 using namespace lightbin;
+
+/// Larger than test::random_lights(), so that the same kernels are chosen for fewer of them, too.
+std::vector<glm::vec4> large_lights(std::size_t count) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
+    std::vector<glm::vec4> lights(count);
+    for (glm::vec4& light : lights)
+        light = {side(random), side(random), depth(random), radius(random)};
+    return lights;
+}
 
 // The number of allocations in one call of work.
 std::size_t allocations_in(auto&& work) {
@@ -27,7 +38,7 @@ struct Scene {
     Slices slices = *Slices::exponential(9, 1, 50);
 
     Scene(int width, int height, std::size_t light_count)
-        : view(test::view({width, height}, 32)), lights(test::random_lights(light_count, 1)),
+        : view(test::view({width, height}, 32)), lights(large_lights(light_count)),
           depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), min(view.tile_count()),
           max(view.tile_count()), weights(light_count) {
         for (std::size_t i = 0; i < depth.size(); ++i)

@@ -30,7 +30,10 @@ bool contains(const Box& box, const glm::vec3& p) {
 }  // namespace
 
 TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower one leaves out") {
-    const std::vector<Box> boxes = test::random_kinds(0, 0, 400, 5).boxes;
+    std::vector<Box> boxes = test::random_kinds(0, 0, 400, 5).boxes;
+    for (Box& box : boxes)
+        for (float& coordinate : box.half_axes[2])
+            coordinate /= 8;
     std::vector<Sphere> spheres;
     for (const Box& box : boxes)
         spheres.push_back(bounding_sphere(box));
