@@ -122,8 +122,6 @@ platform() {
         *:oracle) argument=1000 ;;
         # A request of more memory than there is ends the program there.
         address:unit) argument="--no-colors=true --source-file-exclude=*/memory.cpp" ;;
-        # Without threads.
-        wasm:unit | wasm-simd:unit) argument="--no-colors=true --test-case-exclude=*on*any*number*of*threads" ;;
         *:unit) argument=--no-colors=true ;;
         *) argument= ;;
         esac

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace test {
@@ -49,15 +48,6 @@ template <class Visit> void on_machine_tiers(Visit visit) {
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }
-
-/// A thread a body: what a Parallel may be given.
-inline const auto on_threads = [](std::size_t n, auto body) {
-    std::vector<std::thread> running;
-    for (std::size_t i = 0; i < n; ++i)
-        running.emplace_back(body, i);
-    for (std::thread& thread : running)
-        thread.join();
-};
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
 inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
