@@ -117,8 +117,6 @@ platform() {
         case $name:$program in
         # A request of more memory than there is ends the program there.
         address:unit) argument="--no-colors=true --source-file-exclude=*/memory.cpp" ;;
-        # Without threads.
-        wasm:unit | wasm-simd:unit) argument="--no-colors=true --test-case-exclude=*on*any*number*of*threads" ;;
         *:unit) argument=--no-colors=true ;;
         wasm:lists | wasm-simd:lists) argument=60 ;;
         *:lists) argument="60 threads" ;;

@@ -2,8 +2,8 @@
 # THREADS=-pthread LINK=... EXE=.exe FOLDER/lists.exe ... from the repository's root. In two units what takes long to
 # compile, the kernels, is the same for many files.
 
-# Left out: what measures time or needs a library more than doctest and GLM, and the tiers, which lists.cpp compares.
-unit := $(filter-out %/advise.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
+# Left out: what measures time or needs a library more than doctest and GLM.
+unit := $(filter-out %/advise.cpp %/matrix.cpp,$(wildcard tests/unit/*.cpp))
 one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
 headers := $(shell find include tests/unit tests/guest tests/platforms tests/split_mix.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
 compile = $(CXX) $(level) $(FLAGS) $(THREADS) -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
