@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 takes "" "" "$@"
 
 tools="g++ cmake ninja-build pkgconf python3"
-libraries="doctest-dev libglm-dev libeigen3-dev"
+libraries="doctest-dev libglm-dev libeigen3-dev nlohmann-json3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window

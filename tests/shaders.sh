@@ -1,9 +1,9 @@
 #!/bin/sh
-# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as
-# root or with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them. Vulkan
-# under its validation layer, WebGL 2 in a browser, WebGPU by its two implementations (Chromium's Dawn and Firefox's
-# wgpu, with their compilers Tint and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine. Installs what
-# is missing; what can't be had is skipped, and the summary says so. Takes about half an hour.
+# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as root or
+# with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them. Vulkan under its
+# validation layer, WebGPU by its two implementations (Chromium's Dawn and Firefox's wgpu, with their compilers Tint
+# and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine. Installs what is missing; what can't be had
+# is skipped, and the summary says so. Takes about half an hour.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -120,23 +120,13 @@ if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validati
     fi
 fi
 
-if have WebGL g++ chromium; then
-    echo "$me: building the writer of the pages for WebGL"
-    build g++ webgl/write_jobs.cpp write_webgl_jobs
-    run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
-fi
-
 # have_npm PART PACKAGE: whether an npm package could be put into build/shaders/npm/PACKAGE. Debian's npm is installed
 # only where there is none.
 have_npm() {
-    part=$1 package=$2
+    part=$1
     command -v npm >/dev/null || have "$part" npm || return 1
-    mkdir -p "$out/npm/$package"
-    # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    npm install --prefix "$out/npm/$package" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit \
-        --no-fund "$package" >"$out/npm.log" 2>&1 && return
-    note "$part" "SKIPPED, as npm could not install $package:" \
-        "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
+    (fetch_npm "$out/npm/$2" "$2") && return
+    note "$part" "SKIPPED, as npm could not install $2"
     return 1
 }
 
@@ -144,7 +134,7 @@ have_npm() {
 dawn=webgpu@0.6.2
 deno=deno@2.9.6
 
-if have WGSL g++ nodejs chromium mesa-vulkan-drivers; then
+if have WGSL g++ nodejs chromium mesa-vulkan-drivers nlohmann-json3-dev; then
     echo "$me: building the writer of the jobs for WebGPU"
     build g++ webgpu/write_jobs.cpp write_wgsl_jobs
     mkdir -p "$out/runtime" && chmod 700 "$out/runtime"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,59 +49,8 @@ inline std::string everything_glb() {
                                bytes_of(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3, 0, 0}) +  // at 144
                                bytes_of(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}) +       // at 152
                                bytes_of(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});        // at 164
-    return glb(R"({
-"asset": {"version": "2.0"},
-"scene": 0,
-"scenes": [{"nodes": [0, 1, 2, 5]}],
-"nodes": [
-  {"mesh": 0, "matrix": [10,0,0,0, 0,10,0,0, 0,0,10,0, 0,0,-20,1]},
-  {"translation": [0, 0, -10], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "scale": [2, 2, 2],
-   "children": [3, 4]},
-  {"mesh": 1, "translation": [3, 0, -12], "scale": [-1, 1, 1]},
-  {"mesh": 2, "translation": [0, 1, 2]},
-  {"translation": [0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
-  {"translation": [0, 1, 5], "children": [6, 7, 8, 9, 10]},
-  {"camera": 0, "name": "front"},
-  {"camera": 1, "name": "flat"},
-  {"translation": [-2, 2, -15], "extensions": {"KHR_lights_punctual": {"light": 1}}},
-  {"translation": [3, 2, -10], "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476],
-   "extensions": {"KHR_lights_punctual": {"light": 2}}},
-  {"rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476],
-   "extensions": {"KHR_lights_punctual": {"light": 3}}}],
-"cameras": [
-  {"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.5}},
-  {"type": "orthographic", "orthographic": {"xmag": 8, "ymag": 6, "znear": 1, "zfar": 60}}],
-"meshes": [
-  {"primitives": [
-    {"attributes": {"POSITION": 0}, "indices": 3, "material": 0},
-    {"attributes": {"POSITION": 0}, "indices": 4},
-    {"attributes": {"POSITION": 1}, "mode": 5},
-    {"attributes": {"POSITION": 0}, "mode": 6},
-    {"attributes": {"POSITION": 0}, "mode": 0}]},
-  {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 2}, "indices": 5, "material": 1}]},
-  {"primitives": [{"attributes": {"POSITION": 0}, "indices": 3, "material": 1}]}],
-"materials": [
-  {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]}},
-  {"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.8, 0.1, 1]}, "doubleSided": true}],
-"accessors": [
-  {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1,-1,0], "max": [1,1,0]},
-  {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1,-1,0], "max": [1,1,0]},
-  {"bufferView": 0, "byteOffset": 96, "componentType": 5126, "count": 4, "type": "VEC3"},
-  {"bufferView": 1, "componentType": 5121, "count": 6, "type": "SCALAR"},
-  {"bufferView": 1, "byteOffset": 8, "componentType": 5123, "count": 6, "type": "SCALAR"},
-  {"bufferView": 1, "byteOffset": 20, "componentType": 5125, "count": 6, "type": "SCALAR"}],
-"bufferViews": [
-  {"buffer": 0, "byteOffset": 0, "byteLength": 144},
-  {"buffer": 0, "byteOffset": 144, "byteLength": 44}],
-"buffers": [{"byteLength": 188}],
-"extensionsUsed": ["KHR_lights_punctual"],
-"extensions": {"KHR_lights_punctual": {"lights": [
-  {"type": "point", "color": [1, 0.5, 0.25], "intensity": 40, "range": 6},
-  {"type": "point", "intensity": 20},
-  {"type": "spot", "intensity": 50, "range": 9, "spot": {"innerConeAngle": 0.3, "outerConeAngle": 0.6}},
-  {"type": "directional", "intensity": 0.1}]}}
-})",
-               binary);
+    std::ifstream json(LIGHTBIN_FIXTURES "/everything.json");
+    return glb({std::istreambuf_iterator<char>(json), {}}, binary);
 }
 
 // The same file with the first `from` in it replaced by `to`, padded to the same length so that its sizes

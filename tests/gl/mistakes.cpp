@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// mistakes TROUBLESHOOTING.md: makes every mistake of that page's table for real, and sees that what the page says
-// tells of it does, and nothing else. Where nothing is wrong, nothing does. --print: what was seen, as a table.
+// Makes every mistake of the table of docs/troubleshooting.md for real, and sees that what the page says tells of it does,
+// and nothing else. Where nothing is wrong, nothing does.
 #include <stdexcept>
 
 struct AssertionFailed : std::logic_error {
@@ -8,18 +8,18 @@ struct AssertionFailed : std::logic_error {
 };
 #define LIGHTBIN_ASSERT(condition) ((condition) ? void() : throw AssertionFailed(#condition))
 
+#include "frame_buffer.hpp"
 #include "gl_context.hpp"
 #include "gl_program.hpp"
 #include "set_ups.hpp"
 
 #include <epoxy/gl.h>
 
+#include <doctest/doctest.h>
+
 #include <glm/gtc/type_ptr.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <set>
@@ -27,6 +27,8 @@ struct AssertionFailed : std::logic_error {
 #include <vector>
 
 namespace {
+
+using lightbin::detail::replaced;
 
 struct Seen {
     std::set<std::string> by;  // what tells
@@ -44,7 +46,7 @@ void main() {
 }
 )";
 
-// Red: the view check; green: the list check; blue: what the list's lights give.
+// Red: a little where something is drawn, and the view check; green: the list check; blue: what the list's lights give.
 const char* const fragment_text = R"(
 uniform vec4 spheres[48];
 uniform uint lights;
@@ -59,7 +61,7 @@ float shade(uint id) {
 
 void main() {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    colour = vec4(0.0, 0.0, 0.0, 1.0);
+    colour = vec4(0.1, 0.0, 0.0, 1.0);
     if (!lightbin_check_view(pixel, position)) colour.r = 1.0;
     lightbin_for_each_missing(light, lights, pixel, DEPTH)
         if (shade(light.id) > 0.0) colour.g = 1.0;
@@ -67,12 +69,6 @@ void main() {
         if (light.id < 48u) colour.b += shade(light.id);
 }
 )";
-
-std::string with(std::string text, const std::string& word, const std::string& meaning) {
-    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + meaning.size()))
-        text.replace(at, word.size(), meaning);
-    return text;
-}
 
 // A floor, a wall behind it, and a small board just before the eye.
 std::vector<glm::vec3> triangles(const Setup& setup) {
@@ -102,8 +98,6 @@ public:
         glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
         glGenBuffers(4, buffers_);
         glGenTextures(4, textures_);
-        for (const int samples : {1, 4})
-            make_target(samples);
         glEnable(GL_DEPTH_TEST);
     }
 
@@ -159,35 +153,17 @@ private:
         glTexBuffer(GL_TEXTURE_BUFFER, lightbin::gl_format(format).internal, buffers_[which]);
     }
 
-    void make_target(int samples) {
-        GLuint& target = targets_[samples];
-        GLuint planes[2];
-        glGenFramebuffers(1, &target);
-        glGenRenderbuffers(2, planes);
-        glBindFramebuffer(GL_FRAMEBUFFER, target);
-        for (const int i : {0, 1}) {
-            glBindRenderbuffer(GL_RENDERBUFFER, planes[i]);
-            glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples == 1 ? 0 : samples,
-                                             i == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT32F, 2 * width,
-                                             2 * height);
-            glFramebufferRenderbuffer(GL_FRAMEBUFFER, i == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
-                                      GL_RENDERBUFFER, planes[i]);
-        }
-        if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-            throw std::runtime_error("no picture of " + std::to_string(samples) + " samples");
-    }
-
     void start(const Setup& setup, const std::string& snippet) {
         const std::string sampling = setup.centroid ? "centroid" : "",
                           window = setup.windowed ? "lightbin_window(apart, sphere.w)" : "1.0";
-        std::string text = with(with(fragment_text, "SAMPLING", sampling), "WINDOW", window);
+        std::string text = replaced(replaced(fragment_text, "SAMPLING", sampling), "WINDOW", window);
         text = "#version 330 core\n" + snippet +
-               with(text, "DEPTH", setup.depth_grows ? "-position.z" : "position.z");
+               replaced(text, "DEPTH", setup.depth_grows ? "-position.z" : "position.z");
         GLuint& program = programs_[text + sampling];
-        if (program == 0) program = link_program(with(vertex_text, "SAMPLING", sampling), text);
+        if (program == 0) program = link_program(replaced(vertex_text, "SAMPLING", sampling), text);
         program_ = program;
         glUseProgram(program);
-        glBindFramebuffer(GL_FRAMEBUFFER, targets_.at(setup.samples));
+        target_.resize(2 * width, 2 * height, setup.samples, GL_RGBA8);
         glViewport(setup.corner[0], setup.corner[1], width, height);
         const bool reversed = setup.projection[3][2] > 0 && setup.projection[2][3] != 0;
         glDepthFunc(reversed ? GL_GREATER : GL_LESS);
@@ -231,21 +207,17 @@ private:
     }
 
     void count(const Setup& setup, Seen& seen) {
-        const int x = setup.corner[0], y = setup.corner[1];
-        if (setup.samples > 1) {
-            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_.at(1));
-            glBlitFramebuffer(0, 0, 2 * width, 2 * height, 0, 0, 2 * width, 2 * height, GL_COLOR_BUFFER_BIT,
-                              GL_NEAREST);
-            glBindFramebuffer(GL_FRAMEBUFFER, targets_.at(1));
-        }
-        std::vector<std::array<std::uint8_t, 4>> pixels(std::size_t{width} * height);
-        glReadPixels(x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-        for (const auto& [red, green, blue, drawn] : pixels) {
-            seen.drawn += drawn > 0;
-            seen.misplaced += red > 0;
-            seen.unlit += green > 0;
-            seen.lit += blue > 0;
-        }
+        const Picture picture = target_.read();
+        const auto column = static_cast<std::size_t>(setup.corner[0]),
+                   row = static_cast<std::size_t>(setup.corner[1]);
+        for (std::size_t y = row; y < row + height; ++y)
+            for (std::size_t x = column; x < column + width; ++x) {
+                const std::uint8_t* const pixel = &picture.rgb[3 * (y * 2 * width + x)];
+                seen.drawn += pixel[0] > 0;
+                seen.misplaced += pixel[0] > 30;
+                seen.unlit += pixel[1] > 0;
+                seen.lit += pixel[2] > 0;
+            }
         if (seen.misplaced > 0) seen.by.insert("view check");
         if (seen.unlit > 0) seen.by.insert("list check");
         if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL reports an error");
@@ -253,7 +225,7 @@ private:
 
     GLuint corners_ = 0, program_ = 0;
     GLuint buffers_[4] = {}, textures_[4] = {};  // tiles, lists, slices, bins
-    std::map<int, GLuint> targets_;              // [samples]
+    FrameBuffer target_{330};
     std::map<std::string, GLuint> programs_;
     std::vector<std::uint32_t> order_;  // of the lights, with z-bins
     lightbin::Binner<> wide_;
@@ -261,6 +233,15 @@ private:
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}> clusters_;
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> z_bins_;
 };
+
+std::vector<std::string> split(const std::string& text, const std::string& between) {
+    std::vector<std::string> parts;
+    std::size_t at = 0;
+    for (std::size_t end; (end = text.find(between, at)) != text.npos; at = end + between.size())
+        parts.push_back(text.substr(at, end - at));
+    parts.push_back(text.substr(at));
+    return parts;
+}
 
 // A row of the page.
 struct Row {
@@ -272,21 +253,13 @@ struct Row {
 std::map<std::string, Row> rows_of(const char* path) {
     std::map<std::string, Row> rows;
     std::ifstream file(path);
-    if (!file) throw std::runtime_error(std::string("cannot open ") + path);
     for (std::string line; std::getline(file, line);) {
-        std::vector<std::string> cells;
-        for (std::size_t at = line.find("| "), end = 0;
-             at != line.npos && (end = line.find(" |", at)) != line.npos; at = line.find("| ", end))
-            cells.push_back(line.substr(at + 2, end - at - 2));
-        if (cells.size() != 4 || cells[1] == "What is wrong" || cells[1].starts_with("---")) continue;
-        rows[cells[1]].picture = cells[0];
-        std::set<std::string>& by = rows[cells[1]].by;
-        for (std::size_t at = 0; at < cells[2].size();) {
-            const std::size_t end = std::min(cells[2].find(", ", at), cells[2].size());
-            by.insert(cells[2].substr(at, end - at));
-            at = end + 2;
-        }
+        const std::vector<std::string> cells = split(line, " | ");
+        if (cells.size() != 4 || cells[1] == "What is wrong") continue;
+        const std::vector<std::string> by = split(cells[2], ", ");
+        rows[cells[1]] = {cells[0].substr(2), {by.begin(), by.end()}};  // after the first "| "
     }
+    rows.erase("---");
     return rows;
 }
 
@@ -299,18 +272,13 @@ bool looks_so(const std::string& picture, const Seen& seen, int lit_when_right) 
                                                                                  : !dark || seen.drawn == 0;
 }
 
-std::string listed(const std::set<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words)
-        text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
+}  // namespace
 
-int run(const char* page, bool print) {
+TEST_CASE("every mistake of the page is told of by what the page says, and where there is none, nothing is") {
     const OffscreenContext context(330);
     Stage stage;
-    std::map<std::string, Row> rows = rows_of(page);
-    int wrong = 0, lit_when_right = 0;
+    std::map<std::string, Row> rows = rows_of(LIGHTBIN_PAGE);
+    int lit_when_right = 0;
     const auto draw = [&](const Case& each) {
         Setup setup;
         each.change(setup);
@@ -320,49 +288,24 @@ int run(const char* page, bool print) {
             return Seen{.by = {"assertion"}};
         }
     };
-    const auto report = [&](const Case& each, const Seen& seen, const std::string& complaint) {
-        wrong += !complaint.empty();
-        if (print || !complaint.empty())
-            std::printf("%-45s %-30s drawn %4d, misplaced %4d, unlit %4d, lit %4d %s\n", each.name.c_str(),
-                        listed(seen.by).c_str(), seen.drawn, seen.misplaced, seen.unlit, seen.lit,
-                        complaint.c_str());
-    };
     for (const Case& each : right_ones()) {
+        CAPTURE(each.name);
         const Seen seen = draw(each);
-        lit_when_right = std::max(lit_when_right, each.name == "plain" ? seen.lit : 0);
-        report(each, seen,
-               !seen.by.empty()                                               ? "<- a false alarm"
-               : seen.drawn < width * height / 3 || seen.lit < seen.drawn / 2 ? "<- too little to see"
-                                                                              : "");
+        if (each.name == "plain") lit_when_right = seen.lit;
+        CHECK(seen.by.empty());
+        CHECK(seen.drawn >= width * height / 3);
+        CHECK(seen.lit >= seen.drawn / 2);
     }
     for (const Case& each : mistakes()) {
+        CAPTURE(each.name);
         const Seen seen = draw(each);
-        const auto row = rows.find(each.name);
-        const std::set<std::string> by = seen.by.empty() ? std::set<std::string>{"nothing"} : seen.by;
-        report(each, seen,
-               row == rows.end()      ? "<- not on the page"
-               : row->second.by != by ? "<- the page says: " + listed(row->second.by)
-               : !looks_so(row->second.picture, seen, lit_when_right)
-                   ? "<- the page says of the picture: " + row->second.picture
-                   : "");
-        if (row != rows.end()) rows.erase(row);
+        REQUIRE(rows.count(each.name) == 1);
+        const Row& row = rows[each.name];
+        CHECK(row.by == (seen.by.empty() ? std::set<std::string>{"nothing"} : seen.by));
+        CAPTURE(row.picture);
+        CHECK(looks_so(row.picture, seen, lit_when_right));
+        rows.erase(each.name);
     }
     for (const auto& row : rows)
-        std::printf("on the page, and not made here: %s\n", row.first.c_str());
-    wrong += static_cast<int>(rows.size());
-    std::printf("%zu mistakes, %zu right set-ups, %d complaints\n", mistakes().size(), right_ones().size(),
-                wrong);
-    return wrong > 0;
-}
-
-}  // namespace
-
-int main(int count, char** words) {
-    try {
-        if (count < 2) return 2;
-        return run(words[1], count > 2);
-    } catch (const std::exception& problem) {
-        std::printf("%s\n", problem.what());
-        return 1;
-    }
+        FAIL_CHECK("on the page, and not made here: ", row.first);
 }

@@ -71,6 +71,12 @@ struct Setup {
     bool samplers_set = true, grid_set = true, image_set = true, tiles_uploaded = true;
 
     void project(const glm::mat4& both) { projection = given_projection = both; }
+    void give_transposed(const glm::mat4& drawn) {
+        projection = drawn;
+        given_projection = glm::transpose(drawn);
+    }
+    void give_size(int given_width, int given_height) { given_size = {given_width, given_height}; }
+    void start_at(int x, int y) { corner = {x, y}; }
 };
 
 struct Case {
@@ -90,17 +96,10 @@ inline std::vector<Case> mistakes() {
     using glm::transpose;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     return {
-        {"projection transposed", [](Setup& s) { s.given_projection = transpose(s.projection); }},
+        {"projection transposed", [](Setup& s) { s.give_transposed(s.projection); }},
         {"projection transposed, near plane at 0.5",
-         [](Setup& s) {
-             s.projection = perspective(1.1f, aspect, 0.5f, 50.0f);
-             s.given_projection = transpose(s.projection);
-         }},
-        {"projection transposed, with jitter",
-         [](Setup& s) {
-             s.projection = jittered(s.projection);
-             s.given_projection = transpose(s.projection);
-         }},
+         [](Setup& s) { s.give_transposed(perspective(1.1f, aspect, 0.5f, 50.0f)); }},
+        {"projection transposed, with jitter", [](Setup& s) { s.give_transposed(jittered(s.projection)); }},
         {"view matrix transposed", [](Setup& s) { s.given_view = transpose(s.view); }},
         {"camera's matrix in place of its inverse", [](Setup& s) { s.given_view = glm::inverse(s.view); }},
         {"world space lights given as view space", [](Setup& s) { s.given_view = glm::mat4(1); }},
@@ -128,24 +127,15 @@ inline std::vector<Case> mistakes() {
         {"aspect inverted",
          [](Setup& s) { s.given_projection = perspective(1.1f, 1 / aspect, 0.2f, 50.0f); }},
         {"jitter drawn, not given", [](Setup& s) { s.projection = jittered(s.projection); }},
-        {"stale size",
-         [](Setup& s) {
-             s.given_size = {64, 48};
-         }},
-        {"stale size of the same aspect",
-         [](Setup& s) {
-             s.given_size = {width * 3 / 4, height * 3 / 4};
-         }},
+        {"stale size", [](Setup& s) { s.give_size(64, 48); }},
+        {"stale size of the same aspect", [](Setup& s) { s.give_size(width * 3 / 4, height * 3 / 4); }},
         {"stale view matrix",
          [](Setup& s) { s.given_view = glm::rotate(glm::mat4(1), 0.1f, glm::vec3(0, 1, 0)) * s.view; }},
         {"16-bit Binner, format of 32 bits", [](Setup& s) { s.narrow_ids = true; }},
         {"samplers unset", [](Setup& s) { s.samplers_set = false; }},
         {"grid uniform unset", [](Setup& s) { s.grid_set = false; }},
         {"constants of the view check unset", [](Setup& s) { s.image_set = false; }},
-        {"viewport's corner not given",
-         [](Setup& s) {
-             s.corner = {40, 24};
-         }},
+        {"viewport's corner not given", [](Setup& s) { s.start_at(40, 24); }},
         {"tile_size of the text not the View's", [](Setup& s) { s.shader.tile_size = 16; }},
         {"lists of this frame, tiles of another",
          [](Setup& s) {
@@ -206,12 +196,12 @@ inline std::vector<Case> right_ones() {
          }},
         {"corner",
          [](Setup& s) {
-             s.corner = {40, 24};
+             s.start_at(40, 24);
              s.shader.viewport_corner = true;
          }},
         {"corner and flip_y",
          [](Setup& s) {
-             s.corner = {40, 24};
+             s.start_at(40, 24);
              s.shader.viewport_corner = s.shader.flip_y = true;
              s.view_options.origin = WindowOrigin::upper_left;
          }},

@@ -5,30 +5,15 @@
 #include "gpu_light.hpp"
 
 #include <doctest/doctest.h>
+#include <glm/gtc/random.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 namespace {
 
-class Dice {
-public:
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
-    }
-    glm::dvec3 direction() {
-        glm::dvec3 v;
-        do
-            v = {between(-1, 1), between(-1, 1), between(-1, 1)};
-        while (glm::length(v) < 0.1 || glm::length(v) > 1);
-        return glm::normalize(v);
-    }
-
-private:
-    std::mt19937 engine_{5};
-};
+using glm::linearRand, glm::sphericalRand;  // the same numbers in each run
 
 bool is_lit(const GpuLight& light, const glm::vec3& point, int ulps) {
     const glm::vec3 to_light = glm::vec3(light.sphere) - point;
@@ -79,16 +64,15 @@ glm::dmat4 rows_of(const lightbin::Box& box) {
 }  // namespace
 
 TEST_CASE("every point that a box changes lies in what it is binned as") {
-    Dice dice;
     int changed = 0, outside = 0, outside_without_margin = 0;
     for (int round = 0; round < 3000; ++round) {
-        const glm::dvec3 z = dice.direction(), x = glm::normalize(glm::cross(z, dice.direction())),
+        const glm::dvec3 z = sphericalRand(1.0), x = glm::normalize(glm::cross(z, sphericalRand(1.0))),
                          y = glm::cross(z, x);
-        const double taper = round % 2 == 0 ? 1 : dice.between(0.02, 0.9);
+        const double taper = round % 2 == 0 ? 1 : linearRand(0.02, 0.9);
         SceneBox scene_box;
-        scene_box.centre = glm::vec3(dice.between(1, 100) * dice.direction());
+        scene_box.centre = glm::vec3(linearRand(1.0, 100.0) * sphericalRand(1.0));
         scene_box.half_axes =
-            glm::mat3(dice.between(0.1, 5) * x, dice.between(0.1, 5) * y, dice.between(0.1, 5) * z);
+            glm::mat3(linearRand(0.1, 5.0) * x, linearRand(0.1, 5.0) * y, linearRand(0.1, 5.0) * z);
         scene_box.taper = static_cast<float>(taper);
         const GpuBox gpu = gpu_box(scene_box, glm::dmat4(1));
         const lightbin::Box box = box_of(gpu);
@@ -98,9 +82,9 @@ TEST_CASE("every point that a box changes lies in what it is binned as") {
             read[i] = glm::dvec4(gpu.rows[i]);
 
         for (int i = 0; i < 100; ++i) {
-            glm::dvec3 place = {dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1)};
+            glm::dvec3 place = {linearRand(-1.0, 1.0), linearRand(-1.0, 1.0), linearRand(-1.0, 1.0)};
             place[i % 3] =
-                (i % 2 == 0 ? 1 : -1) * (1 + dice.between(-1, 1) * std::pow(2, -dice.between(12, 24)));
+                (i % 2 == 0 ? 1 : -1) * (1 + linearRand(-1.0, 1.0) * std::pow(2, -linearRand(12.0, 24.0)));
             const double width = (1 + taper + place.z * (1 - taper)) / 2;
             const glm::vec3 point(glm::dvec3(scene_box.centre) +
                                   glm::dmat3(scene_box.half_axes) * (place * glm::dvec3(width, width, 1)));
@@ -120,27 +104,26 @@ TEST_CASE("every point that a box changes lies in what it is binned as") {
 }
 
 TEST_CASE("every lit point lies in the spot") {
-    Dice dice;
     int lit = 0, outside = 0, outside_without_margin = 0;
     for (int round = 0; round < 3000; ++round) {
         Light light;
         light.spot = true;
-        light.position = glm::vec3(100.0 * dice.direction());
+        light.position = glm::vec3(100.0 * sphericalRand(1.0));
         light.range = 50;
-        light.direction = glm::vec3(dice.direction());
-        const double angle = round % 7 == 0 ? 0 : dice.between(0, round % 2 == 0 ? 0.1 : 1.5);
+        light.direction = glm::vec3(sphericalRand(1.0));
+        const double angle = round % 7 == 0 ? 0 : linearRand(0.0, round % 2 == 0 ? 0.1 : 1.5);
         light.cos_outer = static_cast<float>(std::cos(angle));
-        light.cos_inner = static_cast<float>(std::cos(angle * dice.between(0, 1)));
+        light.cos_inner = static_cast<float>(std::cos(angle * linearRand(0.0, 1.0)));
         const GpuLight gpu = gpu_light(light, glm::dmat4(1));
         const lightbin::Spot spot = spot_of(gpu);
         CHECK(spot.cos_half_angle < light.cos_outer);
         CHECK(light.cos_outer - spot.cos_half_angle < 0x1p-19f);
 
-        const glm::dvec3 axis(light.direction), aside = glm::normalize(glm::cross(axis, dice.direction()));
+        const glm::dvec3 axis(light.direction), aside = glm::normalize(glm::cross(axis, sphericalRand(1.0)));
         for (int i = 0; i < 100; ++i) {
-            const double off = angle + dice.between(-1, 1) * std::pow(2, -dice.between(8, 24));
+            const double off = angle + linearRand(-1.0, 1.0) * std::pow(2, -linearRand(8.0, 24.0));
             const glm::vec3 point(glm::dvec3(light.position) +
-                                  dice.between(0.1, 50) * (std::cos(off) * axis + std::sin(off) * aside));
+                                  linearRand(0.1, 50.0) * (std::cos(off) * axis + std::sin(off) * aside));
             for (const int ulps : {-2, 0, 2}) {
                 if (!is_lit(gpu, point, ulps)) continue;
                 ++lit;

@@ -4,6 +4,8 @@
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
 
+#include "frame_buffer.hpp"
+
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -41,40 +43,29 @@ std::vector<std::string> files_in(const char* page) {
     return files;
 }
 
-/// `text` with `inserted` after its first line, which is its version.
-std::string below_version(const std::string& text, const std::string& inserted) {
-    return std::string(text).insert(text.find('\n') + 1, inserted);
-}
-
-std::string with(std::string text, const std::string& part, const std::string& other) {
-    const std::size_t at = text.find(part);
-    if (at == std::string::npos) fail("there is no '" + part + "' in\n" + text);
-    return text.replace(at, part.size(), other);
+/// `text` with `other` in place of its first line, which is its version.
+std::string with_first_line(const std::string& text, const std::string& other) {
+    return other + text.substr(text.find('\n') + 1);
 }
 
 GLuint link(const std::string& vertex, const std::vector<std::string>& fragments) {
     const GLuint program = glCreateProgram();
+    char log[1000] = "";
     const auto attach = [&](GLenum stage, const std::string& text) {
         const GLuint shader = glCreateShader(stage);
         const char* begin = text.c_str();
         glShaderSource(shader, 1, &begin, nullptr);
         glCompileShader(shader);
-        GLint ok = 0;
-        glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-        char log[1000] = "";
         glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-        if (!ok) fail(log + text);
+        if (log[0] != '\0') fail(log + text);
         glAttachShader(program, shader);
     };
     attach(GL_VERTEX_SHADER, vertex);
     for (const std::string& fragment : fragments)
         attach(GL_FRAGMENT_SHADER, fragment);
     glLinkProgram(program);
-    GLint ok = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &ok);
-    char log[1000] = "";
     glGetProgramInfoLog(program, sizeof log, nullptr, log);
-    if (!ok) fail(log);
+    if (log[0] != '\0') fail(log);
     return program;
 }
 
@@ -92,8 +83,9 @@ template <class Elements> void bind(int unit, GLenum format, const Elements& ele
 }
 
 /// Draws a floor and pillars as programs of GLSL 1.20's time do.
-std::vector<unsigned char> draw(GLuint program, const lightbin::ShaderGrid& constants,
-                                const glm::mat4& projection, const glm::mat4& camera) {
+std::vector<std::uint8_t> draw(const FrameBuffer& target, GLuint program,
+                               const lightbin::ShaderGrid& constants, const glm::mat4& projection,
+                               const glm::mat4& camera) {
     glUseProgram(program);
     const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
     glUniform1i(at("lightbin_tiles"), 0);
@@ -122,9 +114,7 @@ std::vector<unsigned char> draw(GLuint program, const lightbin::ShaderGrid& cons
         glVertex3f(x, 4, z);
     }
     glEnd();
-    std::vector<unsigned char> pixels(4 * width * height);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-    return pixels;
+    return target.read().rgb;
 }
 
 }  // namespace
@@ -143,10 +133,10 @@ int main(int, char** words) {
     const auto snippet = lightbin::shader_snippet(
         {.language = lightbin::ShaderLanguage::glsl_330, .storage = lightbin::ListStorage::texel_buffer});
     const std::string &vertex = files[0], &engine = files[1],
-                      look_up = below_version(files[2], snippet->text);
+                      look_up = with_first_line(files[2], "#version 330 compatibility\n" + snippet->text);
     const GLuint three_files = link(vertex, {engine, look_up});
     // The look-up's own lines stand before the engine's, whose version is now 3.30.
-    const GLuint two_files = link(vertex, {look_up + with(engine, "#version 120\n", "")});
+    const GLuint two_files = link(vertex, {look_up + with_first_line(engine, "")});
     const auto every = [&](int count) {
         const std::string loop =
             "for (int i = 0; i < " + std::to_string(count) + "; ++i) sum += shade(float(i));";
@@ -171,20 +161,11 @@ int main(int, char** words) {
     lightbin::Binner<> binner;
     const auto grid = binner.bin(*view, spheres);
 
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    GLuint target = 0, buffers[2], texture = 0;
-    glGenFramebuffers(1, &target);
-    glBindFramebuffer(GL_FRAMEBUFFER, target);
-    glGenRenderbuffers(2, buffers);
-    const GLenum formats[2] = {GL_RGBA8, GL_DEPTH_COMPONENT24},
-                 points[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
-    for (int i = 0; i < 2; ++i) {
-        glBindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
-        glRenderbufferStorage(GL_RENDERBUFFER, formats[i], width, height);
-        glFramebufferRenderbuffer(GL_FRAMEBUFFER, points[i], GL_RENDERBUFFER, buffers[i]);
-    }
+    FrameBuffer target(330);
+    target.resize(width, height, 1, GL_RGBA8);
     glViewport(0, 0, width, height);
     glEnable(GL_DEPTH_TEST);
+    GLuint texture = 0;
     bind(0, GL_RG32UI, grid->ranges());
     bind(1, GL_R32UI, grid->ids());
     glGenTextures(1, &texture);
@@ -195,9 +176,9 @@ int main(int, char** words) {
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, light_count, 0, GL_RGBA, GL_FLOAT, lights.data());
 
     const auto picture = [&](GLuint program) {
-        return draw(program, lightbin::shader_grid(*view), projection, camera);
+        return draw(target, program, lightbin::shader_grid(*view), projection, camera);
     };
-    const std::vector<unsigned char> all = picture(every(light_count));
+    const std::vector<std::uint8_t> all = picture(every(light_count));
     const auto bright =
         std::count_if(all.begin(), all.end(), [](int byte) { return 20 < byte && byte < 250; });
     const bool fewer_differ = picture(every(light_count - 20)) != all;

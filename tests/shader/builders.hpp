@@ -10,17 +10,13 @@
 #include <lightbin/spot.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <random>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::ShaderLanguage language) {
@@ -42,7 +38,7 @@ inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::Shad
                     options.flip_y = switches & 8;
                     options.viewport_corner = switches & 16;
                     options.push_constants = switches & 32;
-                    if (switches & 1) options.prefix = "my_";
+                    options.prefix = prefixes[switches % std::size(prefixes)];
                     if (reduce_shader(options)) every.push_back(options);
                 }
     return every;
@@ -79,12 +75,9 @@ private:
 /// The bytes of what a shader binds, by the names in its text.
 class BuilderData {
 public:
-    template <class T> void put(const char* name, std::span<const T> elements) {
-        const auto bytes = std::as_bytes(elements);
+    template <class Elements> void put(const char* name, const Elements& elements) {
+        const auto bytes = std::as_bytes(std::span(elements));
         data_[name].assign(bytes.begin(), bytes.end());
-    }
-    template <class T> void put(const char* name, const std::vector<T>& elements) {
-        put(name, std::span<const T>(elements));
     }
 
     /// A struct of constants: as one block, and as vectors.
@@ -95,16 +88,15 @@ public:
                                    bytes.begin() + static_cast<std::ptrdiff_t>(16 * i + 16));
     }
 
+    /// What is beyond the data of its name, with `_block` or without, is 0xee.
     Input input(const lightbin::ShaderBinding& binding, std::string_view prefix) const {
         std::string name = binding.name.substr(prefix.size());
-        const bool constants = binding.resource == lightbin::ShaderResource::uniform_block ||
-                               binding.resource == lightbin::ShaderResource::push_constants;
-        if (const auto end = name.find("_block"); end != name.npos && !constants) name.resize(end);
+        if (data_.count(name) == 0) name.resize(name.find("_block"));
         Input input;
         input.binding = binding;
         input.bytes = data_.at(name);
-        if (binding.bytes != 0) input.bytes.resize(binding.bytes);
-        if (input.bytes.empty()) input.bytes.resize(16);
+        const std::size_t wanted = binding.bytes != 0 ? binding.bytes : input.bytes.size();
+        input.bytes.resize((std::max)(wanted, std::size_t{16}), std::byte{0xee});
         return input;
     }
 
@@ -129,7 +121,6 @@ inline Job builder_job(const lightbin::ShaderText& shader, lightbin::ShaderLangu
 struct BuiltLists {
     std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> ids;
-    int slices = 1;
 
     std::span<const std::uint32_t> of(std::size_t tile) const {
         return std::span(ids).subspan(tiles[tile].offset, tiles[tile].count);

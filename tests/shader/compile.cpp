@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Hands every text of the library, and the example's shaders, to glslang; what is for Vulkan or HLSL becomes
-// SPIR-V, which the validator of SPIRV-Tools then reads. Of WGSL the words are read. And which prefixes names may have is
-// held against the compilers and the languages' reserved words.  compile PART PARTS: takes every PARTS-th language.
+// Hands every text of the library but WGSL to glslang; what is for Vulkan or HLSL becomes
+// SPIR-V, which the validator of SPIRV-Tools then reads. And which prefixes names may have is held against the compilers and
+// the languages' reserved words.
+//   compile WORDS LANGUAGE: its number; WORDS: a file of keywords and reserved words of GLSL 4.60,
+//   GLSL ES 3.20, Vulkan's GLSL, HLSL and WGSL, but for those that end with a digit, as no name of the texts does
 #include "vulkan/compile.hpp"
-#include "builders.hpp"
-#include "cull.hpp"
-#include "readers.hpp"
-#include "reserved_words.hpp"
-#include "shaders.hpp"
-#include "wgsl_words.hpp"
+#include "texts.hpp"
 
 #include <spirv-tools/libspirv.hpp>
 
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -38,26 +36,6 @@ bool compiles(const std::string& text, EShLanguage stage, std::string& error) {
     return good;
 }
 
-/// Returns the name of a loop's variable that an HLSL text declares twice, or nothing. Microsoft's compiler for shader
-/// model 5 keeps such a variable to the end of the scope around its loop, warns of a second one (X3078), and may treat
-/// warnings as errors; no other compiler minds. A text may switch this warning off.
-std::string loop_variable_twice(const std::string& text) {
-    static constexpr std::string_view loop = "for (uint ";
-    if (text.find("#pragma warning(disable : 3078)") != text.npos) return {};
-    std::vector<std::set<std::string>> scopes(1);
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '{') scopes.emplace_back();
-        if (text[i] == '}' && scopes.size() > 1) scopes.pop_back();
-        if (text.compare(i, loop.size(), loop) != 0) continue;
-        const std::size_t begin = i + loop.size();
-        const std::string name = text.substr(begin, text.find(' ', begin) - begin);
-        for (const auto& scope : scopes)
-            if (scope.count(name) != 0) return name;
-        scopes.back().insert(name);
-    }
-    return {};
-}
-
 class Compiler {
 public:
     Compiler() {
@@ -68,25 +46,18 @@ public:
     }
 
     void compile(ShaderLanguage language, EShLanguage stage, const std::string& text) {
-        const bool good = takes(language, stage, text);
         ++texts;
-        if (good) return;
-        if (++refused <= 3) std::printf("refused: %s\n%s\n", error_.c_str(), text.c_str());
+        if (!takes(language, stage, text) && ++refused <= 3)
+            std::printf("refused: %s\n%s\n", error_.c_str(), text.c_str());
     }
 
     bool takes(ShaderLanguage language, EShLanguage stage, const std::string& text) {
         const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
-        if (dialect.hlsl) {
-            error_ = loop_variable_twice(text);
-            if (!error_.empty()) return false;
-        }
         if (dialect.hlsl || dialect.vulkan) {
             ++valid;
             return is_valid(text, stage, dialect.hlsl);
         }
-        if (!dialect.webgpu) return compiles(text, stage, error_);
-        error_ = WgslWords::problem(text);
-        return error_.empty();
+        return compiles(text, stage, error_);
     }
 
     int texts = 0, valid = 0, refused = 0;
@@ -115,122 +86,59 @@ std::string newest(std::string text, ShaderLanguage language) {
     return newer + text.substr(line.size());
 }
 
-void compile_language(Compiler& compiler, ShaderLanguage language) {
-    const bool computes = lightbin::detail::Dialect{language}.storage_buffers;
-    unsigned turn = 0;
-    const auto compile = [&](EShLanguage stage, const std::string& text) {
-        compiler.compile(language, stage, ++turn & 1 ? text : newest(text, language));
-    };
-    for (const lightbin::ShaderOptions& options : every_reader(language)) {
-        const auto snippet = shader_snippet(options);
-        compile(EShLangFragment, reader_text(options, *snippet, Stage::fragment, 9, 9));
-        if (computes) compile(EShLangCompute, reader_text(options, *snippet, Stage::compute, 9, 9));
-    }
-    // glslang takes HLSL's SV_ViewID for any input, and knows of no multiview there; WGSL has none.
-    const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
-    if (!dialect.hlsl && !dialect.webgpu)
-        for (const ReaderRun& run : multiview_runs(language))
-            compile(EShLangFragment, run.job().text);
-    for (const lightbin::ReduceShaderOptions& options : every_reduction(language))
-        compile(options.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment,
-                version_line(language) + reduce_shader(options)->text);
-    for (const CullText& text : every_cull(language))
-        compile(EShLangCompute, version_line(language) + text.shader().text);
+EShLanguage stage_of(const Job& job) {
+    return job.stage == Stage::compute ? EShLangCompute : EShLangFragment;
 }
 
-/// A text of each generator for a language, with the same prefix; in `snippet` a whole shader.
-struct PrefixedTexts {
-    PrefixedTexts(ShaderLanguage language, std::string_view prefix) {
-        lightbin::ShaderOptions options =
-            with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
-        lightbin::ReduceShaderOptions reduction = every_reduction(language)[0];
-        options.prefix = reduction.prefix = prefix;
-        if (const auto made = shader_snippet(options)) {
-            taken = true;
-            snippet = reader_text(options, *made, Stage::fragment, 9, 9);
-        }
-        if (const auto made = reduce_shader(reduction)) reduce = version_line(language) + made->text;
-        reduce_stage = reduction.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment;
-        for (const lightbin::CullPass pass : lightbin::cull_passes) {
-            lightbin::CullShaderOptions cull;
-            cull.language = language;
-            cull.kind = lightbin::CullKind::spot;
-            cull.slicing = lightbin::Slicing::clusters;
-            cull.prefix = prefix;
-            if (const auto made = cull_shader(pass, cull)) passes.push_back(version_line(language) + made->text);
-        }
-    }
-
-    bool taken = false;
-    std::string snippet, reduce;
-    EShLanguage reduce_stage;
-    std::vector<std::string> passes;
-};
+bool in_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
 
 /// The names of a text that begin with a prefix, without it.
-void take_names(std::set<std::string>& names, const std::string& text, const std::string& prefix) {
-    const auto in_name = [&](std::size_t at) {
-        return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
-    };
-    for (std::size_t at = text.find(prefix); at != text.npos; at = text.find(prefix, at)) {
-        const std::size_t begin = at += prefix.size();
-        while (in_name(at))
-            ++at;
-        if (at > begin) names.insert(text.substr(begin, at - begin));
-    }
+void take_names(std::set<std::string>& names, const std::string& text) {
+    for (const std::string prefix : {"my_", "lightbin_"})
+        for (std::size_t at = text.find(prefix); at != text.npos; at = text.find(prefix, at)) {
+            const bool begins = at == 0 || !in_name(text[at - 1]);
+            const std::size_t begin = at += prefix.size();
+            while (at < text.size() && in_name(text[at]))
+                ++at;
+            if (begins && at > begin) names.insert(text.substr(begin, at - begin));
+        }
 }
 
-/// Returns what is wrong with the rule for prefixes, or nothing.
-std::string problem_of_prefixes(Compiler& compiler) {
-    constexpr int languages = 8;
-    // What is taken compiles in every language.
-    for (const std::string& prefix :
-         {std::string("vol"), std::string("volat"), std::string("Vola"), std::string("vola_"),
-          std::string("ext"), std::string("gl"), std::string("GL"), std::string("Gl_"), std::string("x9"),
-          std::string("a_"), std::string(1000, 'a')})
-        for (int i = 0; i < languages; ++i) {
-            const auto language = static_cast<ShaderLanguage>(i);
-            const PrefixedTexts texts(language, prefix);
-            if (!texts.taken) return prefix + " is refused as a prefix";
-            compiler.compile(language, EShLangFragment, texts.snippet);
-            compiler.compile(language, texts.reduce_stage, texts.reduce);
-            for (const std::string& text : texts.passes)
-                compiler.compile(language, EShLangCompute, text);
-        }
-    // What is refused would not, in one at least.
+/// Compiles all texts of a language but WGSL, of which there is no compiler here, and adds the names in them.
+void compile_language(Compiler& compiler, ShaderLanguage language, std::set<std::string>& names) {
+    unsigned turn = 0;
+    each_text(language, {}, [&](const Job& job) {
+        take_names(names, job.text);
+        // glslang takes HLSL's SV_ViewID for any input, and knows of no multiview there.
+        if (language == ShaderLanguage::wgsl || (job.hlsl && job.views > 1)) return;
+        compiler.compile(language, stage_of(job), ++turn & 1 ? job.text : newest(job.text, language));
+    });
+}
+
+/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts, whose prefixes
+/// are as `prefixes` has them.
+std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
+                                const std::set<std::string>& names, const std::vector<std::string>& words) {
+    lightbin::ShaderOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
+    const std::string longest(1000, 'a');
+    options.prefix = longest;
+    if (language != ShaderLanguage::wgsl)
+        compiler.compile(language, EShLangFragment, reader_text_job(options, Stage::fragment).text);
+    // What is refused would not compile, here in OpenGL ES.
+    options = with_switches(every_list(ShaderLanguage::essl_300, lightbin::Slicing::clusters)[0], 8);
+    options.prefix = "zzq_";
+    const std::string text = reader_text_job(options, Stage::fragment).text;
     for (const std::string& prefix : {std::string("vola"), std::string("GL_"), std::string("gl_a"),
                                       std::string("9"), std::string(1020, 'a')}) {
-        if (PrefixedTexts(ShaderLanguage::glsl_430, prefix).taken) return prefix + " is taken as a prefix";
-        int refused = 0;
-        for (int i = 0; i < languages; ++i) {
-            const auto language = static_cast<ShaderLanguage>(i);
-            const std::string text =
-                lightbin::detail::replaced(PrefixedTexts(language, "zzq_").snippet, "zzq_", prefix);
-            refused += !compiler.takes(language, EShLangFragment, text);
-        }
-        if (refused == 0) return prefix + " is refused as a prefix for no reason";
+        if (lightbin::shader_snippet({.prefix = prefix})) return prefix + " is taken as a prefix";
+        if (compiler.takes(ShaderLanguage::essl_300, EShLangFragment,
+                           lightbin::detail::replaced(text, "zzq_", prefix)))
+            return prefix + " is refused as a prefix for no reason";
     }
-    // Reserved words that end as a name does.
-    std::set<std::string> names;
-    for (int i = 0; i < languages; ++i) {
-        const auto language = static_cast<ShaderLanguage>(i);
-        for (lightbin::ShaderOptions options : every_reader(language)) {
-            options.prefix = "zzq_";
-            take_names(names, shader_snippet(options)->text, "zzq_");
-        }
-        for (lightbin::ReduceShaderOptions options : every_reduction(language)) {
-            options.prefix = "zzq_";
-            take_names(names, reduce_shader(options)->text, "zzq_");
-        }
-        for (CullText text : every_cull(language)) {
-            text.options.prefix = "zzq_";
-            take_names(names, text.shader().text, "zzq_");
-        }
-    }
-    int words = 0, made = 0;
-    for (std::size_t at = 1; at < reserved_words.size(); ++words) {
-        const std::string word(reserved_words.substr(at, reserved_words.find(' ', at) - at));
-        at += word.size() + 1;
+    int made = 0;
+    for (const std::string& word : words)
         for (const std::string& name : names)
             if (word.size() > name.size() && word.ends_with(name)) {
                 ++made;
@@ -238,57 +146,30 @@ std::string problem_of_prefixes(Compiler& compiler) {
                 if (lightbin::shader_snippet({.prefix = prefix}))
                     return prefix + " is taken, and makes " + word;
             }
-    }
     for (const std::string& name : names)
         if (name[0] == '_' || std::isdigit(static_cast<unsigned char>(name.back())) ||
             name.starts_with("l_") || name.starts_with("L_") || name.find("__") != name.npos)
             return "the rule for prefixes does not allow for the name " + name;
     std::printf("%d names, %d reserved words, of which prefixes make %d\n", static_cast<int>(names.size()),
-                words, made);
+                static_cast<int>(words.size()), made);
     return made == 0 ? "volatile is not found" : "";
-}
-
-void compile_example(Compiler& compiler, int glsl) {
-    const auto compile = [&](EShLanguage stage, const std::string& text) {
-        compiler.compile(glsl_language(glsl), stage, text);
-    };
-    for (const bool orthographic : {false, true})
-        for (const bool skip_background : {false, true})
-            for (const int samples : {1, 4}) {
-                if (samples > 1 && glsl == 300) continue;  // it has no multisampled textures
-                compile(EShLangFragment,
-                        reduce_fragment_shader(glsl, samples, orthographic, skip_background));
-            }
-    compile(EShLangVertex, geometry_vertex_shader(glsl));
-    compile(EShLangFragment, depth_fragment_shader(glsl));
-    compile(EShLangVertex, overlay_vertex_shader(glsl));
-    using lightbin::Slicing;
-    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
-        compile(EShLangFragment, heat_map_fragment_shader(glsl, slicing));
-        for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
-            compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::tile_list, kinds, slicing));
-    }
-    for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
-        compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::every_light, kinds));
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
-    const int part = count == 3 ? std::atoi(arguments[1]) : 0,
-              parts = count == 3 ? std::atoi(arguments[2]) : 1;
+    if (count < 3) return 2;
+    std::ifstream file(arguments[1]);
+    const std::vector<std::string> words{std::istream_iterator<std::string>(file), {}};
+    const auto language = static_cast<ShaderLanguage>(std::atoi(arguments[2]));
     Compiler compiler;
-    for (int language = part; language < 8; language += parts)
-        compile_language(compiler, static_cast<ShaderLanguage>(language));
-    if (part == 0)
-        for (const int glsl : {330, 430, 300, 310})
-            compile_example(compiler, glsl);
-    if (part == parts - 1)
-        if (const std::string problem = problem_of_prefixes(compiler); !problem.empty()) {
-            std::printf("%s\n", problem.c_str());
-            return 1;
-        }
+    std::set<std::string> names;
+    compile_language(compiler, language, names);
+    if (const std::string problem = problem_of_prefixes(compiler, language, names, words); !problem.empty()) {
+        std::printf("%s\n", problem.c_str());
+        return 1;
+    }
     std::printf("%d texts, %d of them SPIR-V; %d refused\n", compiler.texts, compiler.valid,
                 compiler.refused);
-    return compiler.texts == 0 || compiler.refused > 0;
+    return (compiler.texts == 0) != (language == ShaderLanguage::wgsl) || compiler.refused > 0;
 }

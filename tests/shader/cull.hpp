@@ -7,6 +7,7 @@
 #include <lightbin/shader_cull.hpp>
 
 #include <cstdio>
+#include <cstring>
 #include <optional>
 
 /// A pass and its options.
@@ -39,7 +40,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
                     const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
                                       (!depth_test && (switches & 16) != 0);
-                    if (switches & 1) options.prefix = "my_";
+                    options.prefix = prefixes[switches % std::size(prefixes)];
                     if (!same && cull_shader(pass, options)) every.push_back({pass, options});
                 }
     return every;
@@ -65,18 +66,9 @@ struct CulledGrid {
     std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> lists;
     bool narrow = false;
-    std::uint64_t tests = 0;  // of tiles: how often a light was compared with a tile
 
     std::uint32_t id(std::size_t at) const {
         return narrow ? lists[at / 2] >> (at % 2 * 16) & 0xffff : lists[at];
-    }
-    bool operator==(const CulledGrid& other) const {
-        const auto same = [](const auto& a, const auto& b) {
-            return a.size() == b.size() &&
-                   (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
-        };
-        return std::memcmp(&totals, &other.totals, sizeof totals) == 0 && same(tiles, other.tiles) &&
-               same(lists, other.lists);
     }
     /// Of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
     std::uint64_t hash() const {
@@ -91,13 +83,6 @@ struct CulledGrid {
         return hash;
     }
 };
-
-/// Changes a text before it is run: by nothing, or to arithmetic as bad as specifications allow.
-using TextChange = std::string (*)(std::string);
-
-inline std::string as_it_is(std::string text) {
-    return text;
-}
 
 inline lightbin::CullPlan plan_of(const CullCase& scene) {
     lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, {scene.count, scene.room},
@@ -128,7 +113,7 @@ inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
 /// Runs passes on a device, one job for each buffer that a pass writes.
 template <class Device>
 void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan& plan,
-                std::span<const lightbin::CullPass> passes, CullBuffers& written, TextChange change) {
+                std::span<const lightbin::CullPass> passes, CullBuffers& written) {
     using namespace lightbin;
     BuilderData data;
     data.put_constants(std::as_bytes(std::span(&plan.constants, 1)), {});
@@ -139,8 +124,7 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     data.put("z_bounds", scene.z_bounds);
     if (scene.slices) data.put("slices", shader_slices(*scene.slices));
     for (const CullPass pass : passes) {
-        ShaderText shader = *cull_shader(pass, scene.options);
-        shader.text = change(std::move(shader.text));
+        const ShaderText shader = *cull_shader(pass, scene.options);
         for (const auto& [name, words] : written)
             data.put(name.c_str(), words);
         for (const ShaderBinding& binding : shader.bindings) {
@@ -156,34 +140,18 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// How often the passes count and fill compare a light with a tile: for each tile, the lights in the masks of its block.
-/// That one operation compares 32 lights makes no difference to the number.
-inline std::uint64_t count_tests(const lightbin::ShaderCull& plan, const std::vector<std::uint32_t>& scratch) {
-    const std::size_t blocks = std::size_t{plan.blocks_x} * plan.blocks_y, words = (plan.lights + 63) / 64 * 2;
-    std::vector<std::uint64_t> lights(blocks);
-    for (std::size_t i = 0; i < words * blocks; ++i)
-        lights[i % blocks] += static_cast<unsigned>(std::popcount(scratch[plan.masks + i]));
-    std::uint64_t tests = 0;
-    for (std::uint32_t y = 0; y < plan.tiles_y; ++y)
-        for (std::uint32_t x = 0; x < plan.tiles_x; ++x)
-            tests += 2 * lights[(y >> plan.block_shift) * plan.blocks_x + (x >> plan.block_shift)];
-    return tests;
-}
-
 /// Runs all passes on a device.
-template <class Device>
-CulledGrid run_cull(Device& device, const CullCase& scene, TextChange change = as_it_is) {
+template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
     CullBuffers written = blank_buffers(plan);
-    run_passes(device, scene, plan, cull_passes, written, change);
+    run_passes(device, scene, plan, cull_passes, written);
     CulledGrid grid;
     grid.narrow = scene.options.ids == IdWidth::u16;
     std::memcpy(&grid.totals, written["scratch"].data(), sizeof grid.totals);
     grid.tiles.resize((written["tiles"].size() - 16) / 2);
     std::memcpy(grid.tiles.data(), written["tiles"].data(), grid.tiles.size() * 8);
     grid.lists = written["lists"];
-    if (scene.options.slicing == Slicing::none) grid.tests = count_tests(plan.constants, written["scratch"]);
     return grid;
 }
 
@@ -229,12 +197,10 @@ inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expecte
         }
         std::sort(own.begin(), own.end());
         const auto wanted = expected.of(cell);
-        std::vector<std::uint32_t> lacking, more;
-        std::set_difference(wanted.begin(), wanted.end(), own.begin(), own.end(),
-                            std::back_inserter(lacking));
-        std::set_difference(own.begin(), own.end(), wanted.begin(), wanted.end(), std::back_inserter(more));
-        tally.missed += lacking.size();
-        tally.excess += more.size();
+        std::vector<std::uint32_t> both;
+        std::set_intersection(wanted.begin(), wanted.end(), own.begin(), own.end(), std::back_inserter(both));
+        tally.missed += wanted.size() - both.size();
+        tally.excess += own.size() - both.size();
     }
     if (grid.totals.entries != end) ++tally.wrong;
     return tally;

@@ -10,7 +10,11 @@
 #include <lightbin/shader_cull.hpp>
 #include <lightbin/spot.hpp>
 
-#include <algorithm>
+#define GLM_FORCE_SWIZZLE
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -68,146 +72,50 @@ struct Real {
         return r;
     }
     double d() const { return static_cast<double>(v); }
-    float v = 0;
+
+    friend Real operator+(Real a, Real b) { return exact(rounded_sum(a.d() + b.d())); }
+    friend Real operator-(Real a, Real b) { return exact(rounded_sum(a.d() - b.d())); }
+    friend Real operator*(Real a, Real b) { return exact(rounded_sum(a.d() * b.d())); }
+    friend Real operator/(Real a, Real b) { return exact(off_by(a.d() / b.d(), 2.5)); }
+    friend Real operator-(Real a) { return exact(-a.v); }
+    friend Real& operator+=(Real& a, Real b) { return a = a + b; }
+    friend bool operator<(Real a, Real b) { return a.v < b.v; }
+    friend bool operator>(Real a, Real b) { return a.v > b.v; }
+    friend bool operator<=(Real a, Real b) { return a.v <= b.v; }
+    friend bool operator>=(Real a, Real b) { return a.v >= b.v; }
+    friend Real abs(Real a) { return exact(std::fabs(a.v)); }
+    friend Real min(Real a, Real b) { return b.v < a.v ? b : a; }
+    friend Real max(Real a, Real b) { return a.v < b.v ? b : a; }
+    friend Real clamp(Real a, Real low, Real high) { return min(max(a, low), high); }
+    friend Real sqrt(Real a) { return exact(off_by(1 / exact(off_by(1 / std::sqrt(a.d()), 2)).d(), 2.5)); }
+
+    float v;  // without an initializer, as GLM keeps it in unions
 };
 
-Real operator+(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() + b.d()));
-}
-Real operator-(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() - b.d()));
-}
-Real operator*(Real a, Real b) {
-    return Real::exact(rounded_sum(a.d() * b.d()));
-}
-Real operator/(Real a, Real b) {
-    return Real::exact(off_by(a.d() / b.d(), 2.5));
-}
-Real operator-(Real a) {
-    return Real::exact(-a.v);
-}
-Real& operator+=(Real& a, Real b) {
-    return a = a + b;
-}
-bool operator<(Real a, Real b) {
-    return a.v < b.v;
-}
-bool operator>(Real a, Real b) {
-    return a.v > b.v;
-}
-bool operator<=(Real a, Real b) {
-    return a.v <= b.v;
-}
-bool operator>=(Real a, Real b) {
-    return a.v >= b.v;
-}
-Real abs(Real a) {
-    return Real::exact(std::fabs(a.v));
-}
-Real min(Real a, Real b) {
-    return b.v < a.v ? b : a;
-}
-Real max(Real a, Real b) {
-    return a.v < b.v ? b : a;
-}
 std::uint32_t max(std::uint32_t a, std::uint32_t b) {
     return a < b ? b : a;
 }
-Real clamp(Real a, Real low, Real high) {
-    return min(max(a, low), high);
-}
-Real sqrt(Real a) {
-    const Real inverse = Real::exact(off_by(1 / std::sqrt(a.d()), 2));
-    return Real::exact(off_by(1 / inverse.d(), 2.5));
-}
 
 using uint = std::uint32_t;
-
-struct vec2 {
-    Real x, y;
-};
-struct vec3 {
-    Real x, y, z;
-};
-struct vec4 {
-    vec4() = default;
-    vec4(Real a, Real b, Real c, Real d) : x(a), y(b), z(c), w(d) {}
-    vec4(vec3 a, Real d) : x(a.x), y(a.y), z(a.z), w(d) {}
-    vec4(vec2 a, vec2 b) : x(a.x), y(a.y), z(b.x), w(b.y) {}
-    vec3 first_three() const { return {x, y, z}; }
-    vec2 first_two() const { return {x, y}; }
-    vec2 last_two() const { return {z, w}; }
-    Real x, y, z, w;
-};
-struct uvec2 {
-    uint x, y;
-};
-struct uvec4 {
-    uint x, y, z, w;
-};
-vec3 operator+(vec3 a, vec3 b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-vec3 operator-(vec3 a, vec3 b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-vec3 operator*(vec3 a, vec3 b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-vec3 operator*(vec3 a, Real b) {
-    return {a.x * b, a.y * b, a.z * b};
-}
+using vec2 = glm::vec<2, Real>;
+using vec3 = glm::vec<3, Real>;
+using vec4 = glm::vec<4, Real>;
+using glm::uvec2;
+using glm::uvec4;
 
 Real uintBitsToFloat(uint bits) {
     return Real::exact(std::bit_cast<float>(bits));
 }
 
-// What the text reads and writes. All texts have the same.
-std::vector<uint> lights, scratch;
-uvec4 grid;
-vec4 axis_x, axis_y, signs, planes, origin, column_x, column_y, column_z, origin_image;
-void mark(uint, uvec2, uvec2, uvec2) {}
+// What the text reads and writes.
+std::vector<uint> p_lights, p_scratch;
+uvec4 p_grid;
+vec4 p_axis_x, p_axis_y, p_signs, p_planes, p_origin, p_column_x, p_column_y, p_column_z, p_origin_image;
+void p_mark(uint, uvec2, uvec2, uvec2) {}
 
-#define sphere_lights lights
-#define world_lights lights
-#define flat_lights lights
-#define spot_lights lights
-#define sphere_scratch scratch
-#define world_scratch scratch
-#define flat_scratch scratch
-#define spot_scratch scratch
-#define sphere_grid grid
-#define world_grid grid
-#define flat_grid grid
-#define spot_grid grid
-#define sphere_axis_x axis_x
-#define world_axis_x axis_x
-#define flat_axis_x axis_x
-#define spot_axis_x axis_x
-#define sphere_axis_y axis_y
-#define world_axis_y axis_y
-#define flat_axis_y axis_y
-#define spot_axis_y axis_y
-#define sphere_signs signs
-#define world_signs signs
-#define flat_signs signs
-#define spot_signs signs
-#define sphere_planes planes
-#define world_planes planes
-#define flat_planes planes
-#define spot_planes planes
-#define sphere_mark mark
-#define world_mark mark
-#define flat_mark mark
-#define spot_mark mark
-#define world_origin origin
-#define world_column_x column_x
-#define world_column_y column_y
-#define world_column_z column_z
-#define world_origin_image origin_image
-#define xyz first_three()
-#define xy first_two()
-#define zw last_two()
+#define xyz xyz()
+#define xy xy()
+#define zw zw()
 #define float Real
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"
@@ -222,21 +130,21 @@ using namespace lightbin;
 
 void set_constants(const ShaderCull& c, double margin) {
     const auto real = [](auto n) { return Real::exact(n); };
-    grid = {c.tiles_x, c.tiles_y, 1, 0};
-    axis_x = {real(c.scale_x), real(c.offset_x),
-              real(static_cast<float>(static_cast<double>(c.margin_x) * margin)), real(c.limit_x)};
-    axis_y = {real(c.scale_y), real(c.offset_y),
-              real(static_cast<float>(static_cast<double>(c.margin_y) * margin)), real(c.limit_y)};
-    signs = {real(c.sign_x), real(c.sign_y), real(c.sign_z), real(c.slice_margin)};
-    planes = {real(c.near_depth), real(c.front), real(c.back), real(c.near_fast)};
+    p_grid = {c.tiles_x, c.tiles_y, 1, 0};
+    p_axis_x = {real(c.scale_x), real(c.offset_x),
+                real(static_cast<float>(static_cast<double>(c.margin_x) * margin)), real(c.limit_x)};
+    p_axis_y = {real(c.scale_y), real(c.offset_y),
+                real(static_cast<float>(static_cast<double>(c.margin_y) * margin)), real(c.limit_y)};
+    p_signs = {real(c.sign_x), real(c.sign_y), real(c.sign_z), real(c.slice_margin)};
+    p_planes = {real(c.near_depth), real(c.front), real(c.back), real(c.near_fast)};
     const auto column = [&](const auto& three, auto fourth) {
         return vec4{real(three[0]), real(three[1]), real(three[2]), real(fourth)};
     };
-    origin = column(c.origin, c.stretch);
-    column_x = column(c.column_x, c.error_rate);
-    column_y = column(c.column_y, c.error_at_origin);
-    column_z = column(c.column_z, c.cone_error);
-    origin_image = column(c.origin_image, c.max_distance);
+    p_origin = column(c.origin, c.stretch);
+    p_column_x = column(c.column_x, c.error_rate);
+    p_column_y = column(c.column_y, c.error_at_origin);
+    p_column_z = column(c.column_z, c.cone_error);
+    p_origin_image = column(c.origin_image, c.max_distance);
 }
 
 class LightMaker {
@@ -287,14 +195,15 @@ private:
     const detail::Camera& camera_;
 };
 
+/// Of rectangles: how many there are, and how many do not hold the Binner's.
 struct Tally {
     std::uint64_t rectangles = 0, lost = 0;
 };
 
 /// Projects lights by the text, under each arithmetic, and compares with the Binner's rectangles.
 template <class Light>
-Tally compare(const View& view, const CullShaderOptions& options, const std::vector<Light>& made,
-              const Matrix* to_view, double margin) {
+void compare(const View& view, const CullShaderOptions& options, const std::vector<Light>& made,
+             const Matrix* to_view, double margin, Tally& tally) {
     Footprints projected;
     const auto project = [&](const auto& by_binner) {
         projected.project(machine_isa(), view, detail::as_lights(by_binner), Parallel{});
@@ -304,34 +213,29 @@ Tally compare(const View& view, const CullShaderOptions& options, const std::vec
     else
         project(made);
     const detail::FootprintArrays& expected = projected.arrays();
-    const auto plan = *plan_cull(view, options, {static_cast<uint>(made.size()), 0}, nullptr, to_view);
-    set_constants(plan.constants, margin);
-    lights.resize(made.size() * sizeof(Light) / 4);
-    std::memcpy(lights.data(), made.data(), made.size() * sizeof(Light));
+    set_constants(plan_cull(view, options, {static_cast<uint>(made.size()), 0}, nullptr, to_view)->constants,
+                  margin);
+    p_lights.resize(made.size() * sizeof(Light) / 4);
+    std::memcpy(p_lights.data(), made.data(), made.size() * sizeof(Light));
     constexpr uint totals = sizeof(CullTotals) / 4;  // before the records
-    scratch.resize(totals + made.size() * 2);
-    Tally tally;
+    p_scratch.resize(totals + made.size() * 2);
+    const auto by_text = options.kind == CullKind::spot ? spot::p_project
+                         : to_view != nullptr           ? world::p_project
+                         : options.orthographic         ? flat::p_project
+                                                        : sphere::p_project;
     for (const Rounding way :
          {Rounding::nearest, Rounding::up, Rounding::down, Rounding::either, Rounding::anywhere}) {
         rounding = way;
         for (uint i = 0; i < projected.visible(); ++i) {
             const uint id = expected.ids[i];
-            if constexpr (std::is_same_v<Light, Spot>)
-                spot_project(id, 0);
-            else if (to_view != nullptr)
-                world_project(id, 0);
-            else if (options.orthographic)
-                flat_project(id, 0);
-            else
-                sphere_project(id, 0);
-            const uint first = scratch[totals + 2 * id], last = scratch[totals + 2 * id + 1];
+            by_text(id, 0);
+            const uint first = p_scratch[totals + 2 * id], last = p_scratch[totals + 2 * id + 1];
             ++tally.rectangles;
             tally.lost += (first & 0xffff) > expected.x0[i] || first >> 16 > expected.y0[i] ||
                           (last & 0xffff) < expected.x1[i] || last >> 16 < expected.y1[i];
         }
     }
     rounding = Rounding::nearest;
-    return tally;
 }
 
 }  // namespace
@@ -358,22 +262,14 @@ int main(int count, char** arguments) {
             }
             CullShaderOptions options;
             options.orthographic = view.orthographic();
-            const auto add = [](Tally& to, const Tally& t, const char* what) {
-                to.rectangles += t.rectangles;
-                to.lost += t.lost;
-                if (t.lost > 0 && what != nullptr)
-                    std::printf("%s: %llu of %llu rectangles lost\n", what,
-                                static_cast<unsigned long long>(t.lost),
-                                static_cast<unsigned long long>(t.rectangles));
-            };
-            add(all, compare(view, options, spheres, nullptr, 1), "spheres");
-            add(narrow, compare(view, options, spheres, nullptr, 0.2), nullptr);
+            compare(view, options, spheres, nullptr, 1, all);
+            compare(view, options, spheres, nullptr, 0.2, narrow);
             if (options.orthographic) continue;
             options.kind = CullKind::spot;
-            add(all, compare(view, options, spots, nullptr, 1), "spots");
+            compare(view, options, spots, nullptr, 1, all);
             options.kind = CullKind::sphere;
             options.world_space = true;
-            add(all, compare(view, options, spheres, &to_view, 1), "world space");
+            compare(view, options, spheres, &to_view, 1, all);
         }
     std::printf("%llu rectangles, %llu lost; with a margin of 2^-21 %llu of %llu are\n",
                 static_cast<unsigned long long>(all.rectangles), static_cast<unsigned long long>(all.lost),

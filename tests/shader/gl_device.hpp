@@ -9,23 +9,11 @@
 
 #include <epoxy/gl.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-constexpr bool is_gl(lightbin::TexelFormat format, GLenum internal, GLenum layout, GLenum type) {
-    const lightbin::GlFormat gl = lightbin::gl_format(format);
-    return gl.internal == internal && gl.layout == layout && gl.type == type;
-}
-static_assert(is_gl(lightbin::TexelFormat::none, GL_NONE, GL_NONE, GL_NONE));
-static_assert(is_gl(lightbin::TexelFormat::r8ui, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE));
-static_assert(is_gl(lightbin::TexelFormat::r16ui, GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT));
-static_assert(is_gl(lightbin::TexelFormat::r32ui, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT));
-static_assert(is_gl(lightbin::TexelFormat::rg32ui, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT));
-static_assert(is_gl(lightbin::TexelFormat::r32f, GL_R32F, GL_RED, GL_FLOAT));
 
 class GlDevice {
 public:
@@ -118,7 +106,7 @@ private:
         };
         switch (input.binding.resource) {
         case ShaderResource::uniform_vector:
-            set_uniform(program, place, name, input.bytes);
+            set_uniform(place, name, input.bytes);
             return;
         case ShaderResource::uniform_block: {
             const GLuint index = glGetUniformBlockIndex(program, name);
@@ -143,11 +131,6 @@ private:
             fill(GL_TEXTURE_BUFFER);
             glBindTexture(GL_TEXTURE_BUFFER, textures.back());
             glTexBuffer(GL_TEXTURE_BUFFER, form.internal, buffers.back());
-        } else if (input.samples > 1) {
-            fill_samples(input, textures.back());
-            glUseProgram(program);
-            glActiveTexture(GL_TEXTURE0 + slot);
-            glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, textures.back());
         } else {
             glBindTexture(GL_TEXTURE_2D, textures.back());
             glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -159,67 +142,21 @@ private:
         if (glsl_ == 330 || glsl_ == 300) glUniform1i(place, static_cast<GLint>(slot));
     }
 
-    /// Makes a multisample texture of floats: each sample is drawn from a buffer of them.
-    void fill_samples(const Input& input, GLuint texture) const {
-        const bool es = glsl_ < 330;
-        const std::string version =
-            es ? "#version 320 es\nprecision highp float;\nprecision highp int;\n" : "#version 400 core\n";
-        const GLuint program = link_program(version + full_triangle, version + R"(
-uniform highp usamplerBuffer samples;
-uniform int width;
-uniform int count;
-out float depth;
-void main() {
-    int pixel = int(gl_FragCoord.y) * width + int(gl_FragCoord.x);
-    depth = uintBitsToFloat(texelFetch(samples, pixel * count + gl_SampleID).x);
-}
-)");
-        glUseProgram(program);
-        const auto width = static_cast<GLsizei>(input.width), height = static_cast<GLsizei>(input.height);
-        glUniform1i(glGetUniformLocation(program, "width"), width);
-        glUniform1i(glGetUniformLocation(program, "count"), static_cast<GLint>(input.samples));
-        glUniform1i(glGetUniformLocation(program, "samples"), 14);
-        GLuint buffer = 0, values = 0;
-        glGenBuffers(1, &buffer);
-        glGenTextures(1, &values);
-        glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(input.bytes.size()), input.bytes.data(),
-                     GL_STATIC_DRAW);
-        glActiveTexture(GL_TEXTURE14);
-        glBindTexture(GL_TEXTURE_BUFFER, values);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, buffer);
-        glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
-        glTexStorage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, static_cast<GLsizei>(input.samples), GL_R32F,
-                                  width, height, GL_TRUE);
-        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE, texture, 0);
-        glViewport(0, 0, width, height);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glDeleteTextures(1, &values);
-        glDeleteBuffers(1, &buffer);
-        glDeleteProgram(program);
-    }
-
     static constexpr const char* full_triangle = R"(
 void main() {
     gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
 }
 )";
 
-    static void set_uniform(GLuint program, GLint place, const char* name,
-                            const std::vector<std::byte>& data) {
-        const std::byte* const bytes = data.data();
-        GLuint index = 0;
-        glGetUniformIndices(program, 1, &name, &index);
-        if (index == GL_INVALID_INDEX) return;  // not read, and so left out
-        GLint type = 0;
-        glGetActiveUniformsiv(program, 1, &index, GL_UNIFORM_TYPE, &type);
-        if (type == GL_UNSIGNED_INT_VEC4)
-            glUniform4uiv(place, 1, reinterpret_cast<const GLuint*>(bytes));
-        else if (type == GL_INT_VEC2)
-            glUniform2iv(place, 1, reinterpret_cast<const GLint*>(bytes));
+    /// A uniform's type is told by its name. What is not read is left out of the program, and has no place.
+    static void set_uniform(GLint place, const std::string& name, const std::vector<std::byte>& data) {
+        if (name.ends_with("corner"))
+            glUniform2iv(place, 1, reinterpret_cast<const GLint*>(data.data()));
+        else if (name.ends_with("grid"))
+            glUniform4uiv(place, 1, reinterpret_cast<const GLuint*>(data.data()));
         else
             glUniform4fv(place, static_cast<GLsizei>(data.size() / 16),
-                         reinterpret_cast<const GLfloat*>(bytes));
+                         reinterpret_cast<const GLfloat*>(data.data()));
     }
 
     OffscreenContext context_;

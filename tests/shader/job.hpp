@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 enum class Stage : std::uint8_t { compute, fragment };
@@ -37,7 +38,7 @@ struct Job {
     std::uint32_t views = 1;  // fragment: drawn by multiview, if more than 1; each is a layer of the picture
     std::vector<std::uint32_t>
         expected;  // fragment: 4 words a pixel, rows as the shader counts them, view by view
-    std::vector<FloatRange> within;       // where not empty: the words are floats in these ranges
+    std::vector<FloatRange> within;  // where not empty: the words are floats in these ranges
 
     bool accepts(const std::vector<std::uint32_t>& words) const {
         if (within.empty()) return words == expected;
@@ -49,6 +50,20 @@ struct Job {
         return all;
     }
 };
+
+/// Which share of the work: every count-th job from `first` on. On the command line: its last two numbers.
+struct Share {
+    std::size_t first = 0, count = 1;
+};
+
+inline Share share_of(int count, char** arguments) {
+    return count < 3 ? Share{} : Share{std::stoul(arguments[count - 2]), std::stoul(arguments[count - 1])};
+}
+
+/// Prefixes of names, which texts have in turns: usual ones, and some that are nearly a reserved word with a name, or nearly
+/// reserved themselves.
+inline constexpr std::string_view prefixes[] = {"lightbin_", "my_", "vol", "volat", "Vola", "vola_",
+                                                "ext",       "gl",  "GL",  "Gl_",   "x9",   "a_"};
 
 /// What comes before a text.
 inline std::string version_line(lightbin::ShaderLanguage language) {

@@ -2,8 +2,8 @@
 // Every form of the snippet, and runs of them: what every pixel reads is known.
 #pragma once
 
-#include "reader_glsl.hpp"
-#include "reader_wgsl.hpp"
+#include "builders.hpp"
+#include "reader_text.hpp"
 
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -19,28 +19,6 @@
 struct ScreenSize {
     int width, height, tile_size;
 };
-
-inline std::string name_of(const lightbin::ShaderOptions& options) {
-    std::string name = std::string(to_string(options.language)) + " " + to_string(options.storage) + " " +
-                       to_string(options.format.encoding) + " " +
-                       std::to_string(8 * static_cast<int>(options.format.ids)) + " bits";
-    const auto option = [&](bool on, const char* word) {
-        if (on) name += std::string(", ") + word;
-    };
-    option(options.packed_ids, "packed");
-    option(options.tiles_in_uniform_block, "tiles in a block");
-    option(options.push_constants, "push constants");
-    option(options.tile_size != 0, "constant tile size");
-    option(options.flip_y, "flipped");
-    option(options.viewport_corner, "corner");
-    option(options.heat_map, "heat map");
-    option(options.slicing != lightbin::Slicing::none, to_string(options.slicing));
-    option(options.wave_loop, "wave loop");
-    option(options.view_check, "view check");
-    option(options.list_check, "list check");
-    option(options.views > 1, "two views");
-    return name;
-}
 
 /// Every place and writing of the lists that a language has; the other options are as given.
 inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions options) {
@@ -77,6 +55,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
 constexpr unsigned switch_count = 16;  // sets of the options that are on or off
 
 inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, unsigned switches) {
+    options.prefix = prefixes[(switches + 3 * static_cast<unsigned>(options.language)) % std::size(prefixes)];
     options.flip_y = switches & 1;
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
@@ -108,7 +87,6 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     options.slices = {6, set};
     options.bins = {7, set};
     options.view = {8, set};
-    if (set != 0) options.prefix = "my_";
 
     std::vector<lightbin::ShaderOptions> every = every_list(options);
     options.push_constants = dialect.vulkan;
@@ -118,25 +96,24 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     return every;
 }
 
-/// The same with wave loops, if the language has them.
+/// The lists with wave loops, if the language has them.
 inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLanguage language,
                                                             lightbin::Slicing slicing) {
-    std::vector<lightbin::ShaderOptions> every;
-    for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+    std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
+    for (lightbin::ShaderOptions& list : every)
         list.wave_loop = true;
-        if (shader_snippet(list)) every.push_back(list);
-    }
+    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return !shader_snippet(list); });
     return every;
 }
 
-/// The same with two views; with waves every second one has wave loops, if the language has them.
+/// The lists with two views; with waves every second one has wave loops, if the language has them.
 inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
     std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
     for (std::size_t i = 0; i < every.size(); ++i) {
         every[i].views = 2;
         every[i].wave_loop = waves && i % 2 == 1;
-        if (!shader_snippet(every[i])) every[i].wave_loop = false;
+        every[i].wave_loop = every[i].wave_loop && shader_snippet(every[i]);
     }
     return every;
 }
@@ -163,17 +140,6 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
     return every;
 }
 
-/// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
-/// ids that depend on their order. With several views the picture has a band of rows for each view, and one more for a
-/// number that no view has; with multiview, a fragment shader in GLSL or HLSL is told its view by the graphics API.
-inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
-                               Stage stage, std::uint32_t width, std::uint32_t height,
-                               bool multiview = false) {
-    return options.language == lightbin::ShaderLanguage::wgsl
-               ? reader_wgsl(options, snippet, stage, width, height)
-               : reader_glsl(options, snippet, stage, width, height, multiview);
-}
-
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
 /// behind the eye.
 inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
@@ -190,41 +156,22 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     return lights;
 }
 
-/// The bytes of what a snippet binds.
-inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
-                          const lightbin::ShaderGrid& constants, std::span<const lightbin::ShaderView> views,
-                          const lightbin::LightGrid<std::uint32_t>& grid,
-                          std::span<const lightbin::BinRange> bins, std::span<const std::byte> lists) {
-    const std::string name = binding.name.substr(options.prefix.size());
-    Input input;
-    input.binding = binding;
-    const std::vector<std::uint32_t> slices = lightbin::shader_slices(reader_slices());
-    std::span<const std::byte> data = lists;
-    if (name.starts_with("grid"))
-        data = std::as_bytes(std::span(&constants, 1));
-    else if (name.starts_with("corner"))
-        data = std::as_bytes(std::span(&constants.corner_x, 2));
-    else if (name == "depths")
-        data = std::as_bytes(std::span(&views[0].forward, 4));
-    else if (name.starts_with("image"))
-        data = std::as_bytes(views);
-    else if (name.starts_with("tiles"))
-        data = std::as_bytes(grid.ranges());
-    else if (name.starts_with("slices"))
-        data = std::as_bytes(std::span(slices));
-    else if (name.starts_with("bins"))
-        data = std::as_bytes(bins);
-    if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
-    input.bytes.assign(data.begin(), data.end());
-    std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
-    if (binding.resource == lightbin::ShaderResource::texture_2d) {
-        input.width = binding.width ? binding.width : static_cast<std::uint32_t>(grid.tiles_x());
-        const std::size_t row = std::size_t{input.width} * binding.stride;
-        input.height = static_cast<std::uint32_t>((size + row - 1) / row);
-        size = row * input.height;
-    }
-    input.bytes.resize(size, std::byte{0xee});
-    return input;
+/// Gives a texture whole rows: so many texels each as the text has it, or as the grid has columns of tiles.
+inline void fit_texture(Input& input, int tiles_x) {
+    input.width = input.binding.width ? input.binding.width : static_cast<std::uint32_t>(tiles_x);
+    const std::size_t row = std::size_t{input.width} * input.binding.stride;
+    input.height = static_cast<std::uint32_t>((input.bytes.size() + row - 1) / row);
+    input.bytes.resize(row * input.height, std::byte{0xee});
+}
+
+/// What a compute shader writes.
+inline Input result_input(std::size_t bytes) {
+    using namespace lightbin;
+    Input result;
+    result.binding = {
+        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
+    result.bytes.resize(bytes, std::byte{0xee});
+    return result;
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
@@ -266,9 +213,9 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         grid = grids[i].copy_to(all_ranges, all_ids, *grid);
     std::vector<std::byte> lists(encoded_bytes(options.format, cells, entries));
     Job job;
-    job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
-               std::to_string(screen.width) + "x" + std::to_string(screen.height) + ", tile " +
-               std::to_string(screen.tile_size);
+    job.name = to_string(options.language) + std::string(" ") + to_string(options.storage) +
+               (stage == Stage::compute ? ", compute, " : ", fragment, ") + std::to_string(screen.width) +
+               "x" + std::to_string(screen.height) + ", tile " + std::to_string(screen.tile_size);
     if (options.tile_size != 0) options.tile_size = screen.tile_size;
     options.max_tiles = static_cast<std::uint32_t>(grid->ranges().size());
     options.max_entries = static_cast<std::uint32_t>(grid->ids().size()) + 1;  // 0 would be unknown
@@ -286,8 +233,19 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
     ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
-    for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, view_constants, *grid, bins, lists));
+    BuilderData data;
+    data.put("grid", std::span(&constants, 1));
+    data.put("corner", std::span(&constants.corner_x, 2));
+    data.put("image", view_constants);
+    data.put("depths", std::span(&view_constants[0].forward, 4));
+    data.put("tiles", grid->ranges());
+    data.put("lists", lists);
+    data.put("slices", shader_slices(slices));
+    data.put("bins", bins);
+    for (const ShaderBinding& binding : snippet->bindings) {
+        job.inputs.push_back(data.input(binding, options.prefix));
+        if (binding.resource == ShaderResource::texture_2d) fit_texture(job.inputs.back(), grid->tiles_x());
+    }
 
     // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
     const std::uint32_t tile_size =
@@ -322,16 +280,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         }
     if (stage == Stage::compute) {
         job.result = job.inputs.size();
-        Input result;
-        result.binding = {"result_block",
-                          ShaderResource::writable_buffer,
-                          {result_binding, 0},
-                          TexelFormat::none,
-                          16,
-                          0,
-                          0};
-        result.bytes.resize(job.expected.size() * 4, std::byte{0xee});
-        job.inputs.push_back(result);
+        job.inputs.push_back(result_input(job.expected.size() * 4));
     }
     return job;
 }

@@ -6,6 +6,7 @@
 #include "fxc.hpp"
 
 #include <d3d11.h>
+#include <wrl/client.h>
 
 #include <cstdint>
 #include <cstring>
@@ -19,72 +20,27 @@ inline void check(HRESULT result, const char* what) {
     std::exit(1);
 }
 
-/// A COM object, released with it.
-template <class T> class Com {
-public:
-    Com() = default;
-    Com(Com&& other) noexcept : object_(other.object_) { other.object_ = nullptr; }
-    Com& operator=(Com&&) = delete;
-    ~Com() {
-        if (object_) object_->Release();
-    }
-    T** out() { return &object_; }
-    T* operator->() const { return object_; }
-    T* get() const { return object_; }
-
-private:
-    T* object_ = nullptr;
-};
-
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::none) == DXGI_FORMAT_UNKNOWN);
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r8ui) == DXGI_FORMAT_R8_UINT);
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r16ui) == DXGI_FORMAT_R16_UINT);
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r32ui) == DXGI_FORMAT_R32_UINT);
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::rg32ui) == DXGI_FORMAT_R32G32_UINT);
-static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r32f) == DXGI_FORMAT_R32_FLOAT);
+using Microsoft::WRL::ComPtr;
 
 class D3d11Device {
 public:
     D3d11Device() {
         const D3D_FEATURE_LEVEL level = D3D_FEATURE_LEVEL_11_0;
         check(D3D11CreateDevice(nullptr, D3D_DRIVER_TYPE_HARDWARE, nullptr, 0, &level, 1, D3D11_SDK_VERSION,
-                                device_.out(), nullptr, context_.out()),
+                                &device_, nullptr, &context_),
               "a Direct3D 11 device of feature level 11_0");
+        // Clockwise, as the others are culled; in a layer of the picture for each instance.
         vertex_ = fxc_(R"(
-float4 main(uint index : SV_VertexID) : SV_Position {  // clockwise, as the others are culled
-    return float4(float2(index >> 1, index & 1) * 4.0 - 1.0, 0.0, 1.0);
-}
-)",
-                       "vs_5_0");
-        // A layer for each instance.
-        layered_vertex_ = fxc_(R"(
 struct Corner {
     float4 position : SV_Position;
-    uint view : VIEW;
+    uint layer : SV_RenderTargetArrayIndex;
 };
 Corner main(uint index : SV_VertexID, uint view : SV_InstanceID) {
     Corner corner = {float4(float2(index >> 1, index & 1) * 4.0 - 1.0, 0.0, 1.0), view};
     return corner;
 }
 )",
-                               "vs_5_0");
-        layers_ = fxc_(R"(
-struct Corner {
-    float4 position : SV_Position;
-    uint view : VIEW;
-};
-struct InLayer {
-    float4 position : SV_Position;
-    uint layer : SV_RenderTargetArrayIndex;
-};
-[maxvertexcount(3)] void main(triangle Corner corners[3], inout TriangleStream<InLayer> stream) {
-    for (uint i = 0; i < 3; ++i) {
-        InLayer corner = {corners[i].position, corners[i].view};
-        stream.Append(corner);
-    }
-}
-)",
-                       "gs_5_0");
+                       "vs_5_0");
     }
 
     /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
@@ -92,16 +48,15 @@ struct InLayer {
     std::vector<std::uint32_t> run(const Job& job) {
         const std::vector<char>& code = code_of(job);
         context_->ClearState();
-        std::vector<Com<ID3D11Buffer>> buffers(job.inputs.size());
+        std::vector<ComPtr<ID3D11Buffer>> buffers(job.inputs.size());
         for (std::size_t i = 0; i < job.inputs.size(); ++i)
             bind(job.inputs[i], buffers[i]);
         if (job.stage == Stage::fragment) return draw(job, code);
-        Com<ID3D11ComputeShader> shader;
-        check(device_->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()),
-              "compute shader");
-        context_->CSSetShader(shader.get(), nullptr, 0);
+        ComPtr<ID3D11ComputeShader> shader;
+        check(device_->CreateComputeShader(code.data(), code.size(), nullptr, &shader), "compute shader");
+        context_->CSSetShader(shader.Get(), nullptr, 0);
         context_->Dispatch(job.groups[0], job.groups[1], 1);
-        return read(buffers[job.result].get(), job.inputs[job.result].bytes.size());
+        return read(buffers[job.result].Get(), job.inputs[job.result].bytes.size());
     }
 
 private:
@@ -114,7 +69,7 @@ private:
         return code;
     }
 
-    void bind(const Input& input, Com<ID3D11Buffer>& buffer) {
+    void bind(const Input& input, ComPtr<ID3D11Buffer>& buffer) {
         using lightbin::ShaderResource;
         const auto slot = static_cast<UINT>(input.binding.slot.binding);
         if (input.binding.resource == ShaderResource::texture_2d) {
@@ -163,18 +118,18 @@ private:
             info.StructureByteStride = input.binding.stride;
             view.BufferEx.NumElements = bytes / input.binding.stride;
         }
-        check(device_->CreateBuffer(&info, &data, buffer.out()), "buffer");
+        check(device_->CreateBuffer(&info, &data, &buffer), "buffer");
         if (info.BindFlags == D3D11_BIND_CONSTANT_BUFFER) {
-            ID3D11Buffer* constants = buffer.get();
+            ID3D11Buffer* constants = buffer.Get();
             context_->CSSetConstantBuffers(slot, 1, &constants);
             context_->PSSetConstantBuffers(slot, 1, &constants);
         } else if (info.BindFlags == D3D11_BIND_UNORDERED_ACCESS) {
-            Com<ID3D11UnorderedAccessView> writable;
-            check(device_->CreateUnorderedAccessView(buffer.get(), nullptr, writable.out()), "writable view");
-            ID3D11UnorderedAccessView* target = writable.get();
+            ComPtr<ID3D11UnorderedAccessView> writable;
+            check(device_->CreateUnorderedAccessView(buffer.Get(), nullptr, &writable), "writable view");
+            ID3D11UnorderedAccessView* target = writable.Get();
             context_->CSSetUnorderedAccessViews(slot, 1, &target, nullptr);
         } else {
-            set_view(buffer.get(), &view, slot);
+            set_view(buffer.Get(), &view, slot);
         }
     }
 
@@ -186,15 +141,15 @@ private:
         info.Format = static_cast<DXGI_FORMAT>(lightbin::dxgi_format(input.binding.format));
         info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
         const D3D11_SUBRESOURCE_DATA data{input.bytes.data(), input.width * input.binding.stride, 0};
-        Com<ID3D11Texture2D> texture;
-        check(device_->CreateTexture2D(&info, &data, texture.out()), "texture");
-        set_view(texture.get(), nullptr, slot);
+        ComPtr<ID3D11Texture2D> texture;
+        check(device_->CreateTexture2D(&info, &data, &texture), "texture");
+        set_view(texture.Get(), nullptr, slot);
     }
 
     void set_view(ID3D11Resource* resource, const D3D11_SHADER_RESOURCE_VIEW_DESC* info, UINT slot) {
-        Com<ID3D11ShaderResourceView> view;
-        check(device_->CreateShaderResourceView(resource, info, view.out()), "view");
-        ID3D11ShaderResourceView* bound = view.get();
+        ComPtr<ID3D11ShaderResourceView> view;
+        check(device_->CreateShaderResourceView(resource, info, &view), "view");
+        ID3D11ShaderResourceView* bound = view.Get();
         context_->CSSetShaderResources(slot, 1, &bound);
         context_->PSSetShaderResources(slot, 1, &bound);
     }
@@ -205,14 +160,14 @@ private:
         info.BindFlags = info.MiscFlags = info.StructureByteStride = 0;
         info.Usage = D3D11_USAGE_STAGING;
         info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
-        Com<ID3D11Buffer> copy;
-        check(device_->CreateBuffer(&info, nullptr, copy.out()), "staging buffer");
-        context_->CopyResource(copy.get(), buffer);
+        ComPtr<ID3D11Buffer> copy;
+        check(device_->CreateBuffer(&info, nullptr, &copy), "staging buffer");
+        context_->CopyResource(copy.Get(), buffer);
         D3D11_MAPPED_SUBRESOURCE mapped;
-        check(context_->Map(copy.get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
+        check(context_->Map(copy.Get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
         std::vector<std::uint32_t> words(bytes / 4);
         std::memcpy(words.data(), mapped.pData, bytes);
-        context_->Unmap(copy.get(), 0);
+        context_->Unmap(copy.Get(), 0);
         return words;
     }
 
@@ -227,25 +182,18 @@ private:
         info.Format = job.within.empty() ? DXGI_FORMAT_R32G32B32A32_UINT : DXGI_FORMAT_R32G32_FLOAT;
         const std::size_t pixel_bytes = job.within.empty() ? 16 : 8, row_bytes = pixel_bytes * job.width;
         info.BindFlags = D3D11_BIND_RENDER_TARGET;
-        Com<ID3D11Texture2D> picture, copy;
-        check(device_->CreateTexture2D(&info, nullptr, picture.out()), "picture");
-        Com<ID3D11RenderTargetView> view;
-        check(device_->CreateRenderTargetView(picture.get(), nullptr, view.out()), "render target");
-        ID3D11RenderTargetView* target = view.get();
+        ComPtr<ID3D11Texture2D> picture, copy;
+        check(device_->CreateTexture2D(&info, nullptr, &picture), "picture");
+        ComPtr<ID3D11RenderTargetView> view;
+        check(device_->CreateRenderTargetView(picture.Get(), nullptr, &view), "render target");
+        ID3D11RenderTargetView* target = view.Get();
         context_->OMSetRenderTargets(1, &target, nullptr);
-        const std::vector<char>& corners = job.views > 1 ? layered_vertex_ : vertex_;
-        Com<ID3D11VertexShader> vertex;
-        check(device_->CreateVertexShader(corners.data(), corners.size(), nullptr, vertex.out()),
-              "vertex shader");
-        Com<ID3D11GeometryShader> layers;
-        if (job.views > 1)
-            check(device_->CreateGeometryShader(layers_.data(), layers_.size(), nullptr, layers.out()),
-                  "geometry shader");
-        Com<ID3D11PixelShader> pixel;
-        check(device_->CreatePixelShader(code.data(), code.size(), nullptr, pixel.out()), "pixel shader");
-        context_->VSSetShader(vertex.get(), nullptr, 0);
-        context_->GSSetShader(layers.get(), nullptr, 0);
-        context_->PSSetShader(pixel.get(), nullptr, 0);
+        ComPtr<ID3D11VertexShader> vertex;
+        check(device_->CreateVertexShader(vertex_.data(), vertex_.size(), nullptr, &vertex), "vertex shader");
+        ComPtr<ID3D11PixelShader> pixel;
+        check(device_->CreatePixelShader(code.data(), code.size(), nullptr, &pixel), "pixel shader");
+        context_->VSSetShader(vertex.Get(), nullptr, 0);
+        context_->PSSetShader(pixel.Get(), nullptr, 0);
         context_->IASetPrimitiveTopology(D3D11_PRIMITIVE_TOPOLOGY_TRIANGLELIST);
         const D3D11_VIEWPORT viewport{static_cast<float>(job.corner[0]),
                                       static_cast<float>(job.corner[1]),
@@ -259,25 +207,25 @@ private:
         info.BindFlags = 0;
         info.Usage = D3D11_USAGE_STAGING;
         info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
-        check(device_->CreateTexture2D(&info, nullptr, copy.out()), "staging picture");
-        context_->CopyResource(copy.get(), picture.get());
+        check(device_->CreateTexture2D(&info, nullptr, &copy), "staging picture");
+        context_->CopyResource(copy.Get(), picture.Get());
         std::vector<std::uint32_t> words(row_bytes / 4 * job.height * job.views);
         for (UINT layer = 0; layer < job.views; ++layer) {
             D3D11_MAPPED_SUBRESOURCE mapped;
-            check(context_->Map(copy.get(), layer, D3D11_MAP_READ, 0, &mapped), "map");
+            check(context_->Map(copy.Get(), layer, D3D11_MAP_READ, 0, &mapped), "map");
             for (std::size_t y = 0; y < job.height; ++y)
                 std::memcpy(words.data() + row_bytes / 4 * (layer * job.height + y),
                             static_cast<const char*>(mapped.pData) + (y + job.corner[1]) * mapped.RowPitch +
                                 pixel_bytes * job.corner[0],
                             row_bytes);
-            context_->Unmap(copy.get(), layer);
+            context_->Unmap(copy.Get(), layer);
         }
         return words;
     }
 
     Fxc fxc_;
     std::map<std::string, std::vector<char>> compute_codes_, pixel_codes_;
-    std::vector<char> vertex_, layered_vertex_, layers_;
-    Com<ID3D11Device> device_;
-    Com<ID3D11DeviceContext> context_;
+    std::vector<char> vertex_;
+    ComPtr<ID3D11Device> device_;
+    ComPtr<ID3D11DeviceContext> context_;
 };

@@ -10,8 +10,8 @@ int main(int count, char** arguments) {
     constexpr auto language = lightbin::ShaderLanguage::hlsl_5_0;
     D3d11Device device;
     Tally tally;
-    run_readers(device, language, share, tally);
-    run_multiview(device, language, share, tally);
+    run_readers(device, reader_runs(language), share, tally);
+    run_readers(device, multiview_runs(language), share, tally);
     run_reductions(device, language, false, share, tally);
     // Of the grids every fifth: each takes many runs, and so these as long as all the rest.
     const bool culls = CullTests(language, {5 * share.first, 5 * share.count}).run(device);

@@ -5,65 +5,32 @@
 #include "../job.hpp"
 #include "compile.hpp"
 
-#include <vulkan/vulkan.h>
+// Structs are filled member by member.
+#define VULKAN_HPP_NO_CONSTRUCTORS
+#include <vulkan/vulkan_raii.hpp>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <functional>
+#include <list>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
-
-inline void check(VkResult result, const char* what) {
-    if (result == VK_SUCCESS) return;
-    std::printf("%s: VkResult %d\n", what, static_cast<int>(result));
-    std::exit(1);
-}
-
-static_assert(lightbin::vk_format(lightbin::TexelFormat::none) == VK_FORMAT_UNDEFINED);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r8ui) == VK_FORMAT_R8_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r16ui) == VK_FORMAT_R16_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r32ui) == VK_FORMAT_R32_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::rg32ui) == VK_FORMAT_R32G32_UINT);
-static_assert(lightbin::vk_format(lightbin::TexelFormat::r32f) == VK_FORMAT_R32_SFLOAT);
-
-/// Calls what was put in, the last one first.
-class Undo {
-public:
-    Undo() = default;
-    Undo(const Undo&) = delete;
-    Undo& operator=(const Undo&) = delete;
-    ~Undo() {
-        while (!steps_.empty()) {
-            steps_.back()();
-            steps_.pop_back();
-        }
-    }
-    void add(std::function<void()> step) { steps_.push_back(std::move(step)); }
-
-private:
-    std::vector<std::function<void()>> steps_;
-};
 
 class VulkanDevice {
 public:
     VulkanDevice() {
-        make_instance();
-        choose_device();
-        VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, family_};
-        pool_ = make(vkCreateCommandPool, vkDestroyCommandPool, pool, "command pool", undo_);
-        vertex_ = compile_spirv(R"(#version 450
-void main() {
-    gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}
-)",
-                                EShLangVertex, false);
+        const vk::PhysicalDeviceMemoryProperties memory = physical_.getMemoryProperties();
+        constexpr auto wanted =
+            vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+        for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type)
+            if ((memory.memoryTypes[type].propertyFlags & wanted) == wanted) memory_types_ |= 1u << type;
     }
 
-    const std::string& name() const { return name_; }
+    std::string name() const { return physical_.getProperties().deviceName; }
 
     /// Messages of the validation layer so far; each is printed.
     int messages() const { return messages_; }
@@ -71,58 +38,60 @@ void main() {
     /// Does what the validation layer must complain about, and returns whether it did. That message is not
     /// counted.
     bool validates() {
-        expecting_ = true;
         const int before = messages_;
-        VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-        info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;  // size 0 is not valid
-        VkBuffer buffer = nullptr;
-        if (vkCreateBuffer(device_, &info, nullptr, &buffer) == VK_SUCCESS)
-            vkDestroyBuffer(device_, buffer, nullptr);
+        try {
+            const vk::raii::Buffer empty(device_, {.usage = vk::BufferUsageFlagBits::eStorageBuffer});
+        } catch (const vk::SystemError&) {
+        }
         const bool complained = messages_ > before;
         messages_ = before;
-        expecting_ = false;
         return complained;
     }
 
     /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
     /// picture. Throws std::runtime_error where glslang refuses the text.
     std::vector<std::uint32_t> run(const Job& job) {
-        const std::vector<std::uint32_t> spirv =
-            compile_spirv(job.text, job.stage == Stage::compute ? EShLangCompute : EShLangFragment, job.hlsl);
-        Undo undo;
-        VkCommandBuffer commands = begin(undo);
-        const Descriptors descriptors = bind(job, commands, undo);
-        const VkShaderModule module = make_module(spirv, undo);
-        Buffer result;
-        if (job.stage == Stage::compute) {
-            result = *descriptors.result;
-            const VkPipeline pipeline = compute_pipeline(module, descriptors.layout, undo);
-            set(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline, descriptors);
-            vkCmdDispatch(commands, job.groups[0], job.groups[1], 1);
-            barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                    VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-        } else {
-            result = draw(job, commands, module, make_module(vertex_, undo), descriptors, undo);
-        }
-        finish(commands);
-        std::vector<std::uint32_t> words(result.bytes / 4);
-        std::memcpy(words.data(), result.mapped, result.bytes);
+        const bool compute = job.stage == Stage::compute;
+        const vk::raii::ShaderModule shader =
+            make_module(compile_spirv(job.text, compute ? EShLangCompute : EShLangFragment, job.hlsl));
+        Frame frame{std::move(
+            vk::raii::CommandBuffers(device_, {.commandPool = *pool_, .commandBufferCount = 1})[0])};
+        frame.commands.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        bind(job, frame);
+        const Buffer* const result = compute ? dispatch(job, frame, shader) : draw(job, frame, shader);
+        barrier(frame, vk::PipelineStageFlagBits::eHost);
+        frame.commands.end();
+        const vk::SubmitInfo submit{.commandBufferCount = 1, .pCommandBuffers = &*frame.commands};
+        queue_.submit(submit);
+        queue_.waitIdle();
+        std::vector<std::uint32_t> words(result->bytes / 4);
+        std::memcpy(words.data(), result->mapped, result->bytes);
         return words;
     }
 
 private:
     struct Buffer {
-        VkBuffer handle = nullptr;
+        vk::raii::DeviceMemory memory = nullptr;
+        vk::raii::Buffer handle = nullptr;
         void* mapped = nullptr;
         std::size_t bytes = 0;
     };
     struct Image {
-        VkImage handle = nullptr;
-        VkImageView view = nullptr;
+        vk::raii::DeviceMemory memory = nullptr;
+        vk::raii::Image handle = nullptr;
+        vk::raii::ImageView view = nullptr;
     };
-    struct Descriptors {
-        VkPipelineLayout layout = nullptr;
-        std::vector<VkDescriptorSet> sets;
+    /// What a run makes, which must outlive it.
+    struct Frame {
+        vk::raii::CommandBuffer commands;
+        std::vector<vk::raii::DescriptorSetLayout> layouts = {};
+        vk::raii::PipelineLayout layout = nullptr;
+        vk::raii::DescriptorPool pool = nullptr;
+        std::vector<vk::raii::DescriptorSet> sets = {};
+        vk::raii::Pipeline pipeline = nullptr;
+        std::list<Buffer> buffers = {};
+        std::list<Image> images = {};
+        std::list<vk::raii::BufferView> texel_views = {};
         const std::vector<std::byte>* push_constants = nullptr;
         const Buffer* result = nullptr;
     };
@@ -130,488 +99,310 @@ private:
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
                                                      const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                                     void* self) {
-        auto& device = *static_cast<VulkanDevice*>(self);
-        if (!device.expecting_ && device.messages_ < 10)
-            std::printf("validation layer: %s\n", data->pMessage);
-        ++device.messages_;
+                                                     void* count) {
+        int& messages = *static_cast<int*>(count);
+        if (++messages < 10) std::printf("validation layer: %s\n", data->pMessage);
         return VK_FALSE;
     }
 
-    void make_instance() {
-        VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
-        application.apiVersion = VK_API_VERSION_1_1;
-        VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-        messenger.messageSeverity =
-            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-        messenger.messageType =
-            VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-        messenger.pfnUserCallback = on_message;
-        messenger.pUserData = this;
-        const char* layer = "VK_LAYER_KHRONOS_validation";
-        const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-        VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-        info.pApplicationInfo = &application;
-        info.enabledLayerCount = 1;
-        info.ppEnabledLayerNames = &layer;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &extension;
-        check(vkCreateInstance(&info, nullptr, &instance_), "Vulkan with its validation layer");
-        undo_.add([this] { vkDestroyInstance(instance_, nullptr); });
-        const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-            vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-        check(create(instance_, &messenger, nullptr, &messenger_), "debug messenger");
-        undo_.add([this] {
-            reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(
-                instance_, "vkDestroyDebugUtilsMessengerEXT"))(instance_, messenger_, nullptr);
-        });
+    vk::raii::Instance make_instance() {
+        const vk::ApplicationInfo application{.apiVersion = VK_API_VERSION_1_3};
+        const char *const layer = "VK_LAYER_KHRONOS_validation", *const extension =
+                                                                     VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+        return {context_, vk::InstanceCreateInfo{.pApplicationInfo = &application,
+                                                 .enabledLayerCount = 1,
+                                                 .ppEnabledLayerNames = &layer,
+                                                 .enabledExtensionCount = 1,
+                                                 .ppEnabledExtensionNames = &extension}};
     }
 
-    void choose_device() {
-        std::uint32_t count = 1;  // the first one will do
-        if (const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, &physical_);
-            result != VK_INCOMPLETE)
-            check(result, "Vulkan devices");
-        if (count == 0) check(VK_ERROR_INITIALIZATION_FAILED, "there is no Vulkan device");
-        VkPhysicalDeviceProperties properties;
-        vkGetPhysicalDeviceProperties(physical_, &properties);
-        name_ = properties.deviceName;
-        vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-        std::uint32_t families = 8;
-        std::array<VkQueueFamilyProperties, 8> family;
-        vkGetPhysicalDeviceQueueFamilyProperties(physical_, &families, family.data());
-        constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-        while (family_ < families && (family[family_].queueFlags & wanted) != wanted)
-            ++family_;
+    vk::raii::DebugUtilsMessengerEXT make_messenger() {
+        using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+        using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+        return {instance_,
+                vk::DebugUtilsMessengerCreateInfoEXT{.messageSeverity = Severity::eWarning | Severity::eError,
+                                                     .messageType = Type::eValidation,
+                                                     .pfnUserCallback = on_message,
+                                                     .pUserData = &messages_}};
+    }
+
+    /// The first family of queues must do: it draws and computes on all devices in software.
+    vk::raii::Device make_device() {
         const float priority = 1;
-        VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-        queue.queueFamilyIndex = family_;
-        queue.queueCount = 1;
-        queue.pQueuePriorities = &priority;
-        // Vulkan 1.1 requires a device to have it.
-        VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
-        multiview.multiview = VK_TRUE;
-        VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
-        info.pNext = &multiview;
-        info.queueCreateInfoCount = 1;
-        info.pQueueCreateInfos = &queue;
-        check(vkCreateDevice(physical_, &info, nullptr, &device_), "Vulkan device");
-        undo_.add([this] { vkDestroyDevice(device_, nullptr); });
-        vkGetDeviceQueue(device_, family_, 0, &queue_);
+        const vk::DeviceQueueCreateInfo queue{.queueCount = 1, .pQueuePriorities = &priority};
+        vk::PhysicalDeviceVulkan11Features multiview{.multiview = true};
+        const vk::PhysicalDeviceVulkan13Features rendering{.pNext = &multiview, .dynamicRendering = true};
+        return {physical_, vk::DeviceCreateInfo{
+                               .pNext = &rendering, .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue}};
     }
 
-    /// Creates an object of the device, and destroys it when `undo` is gone.
-    template <class Handle, class Info>
-    Handle make(VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
-                void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*), const Info& info, const char* what,
-                Undo& undo) {
-        Handle handle = nullptr;
-        check(create(device_, &info, nullptr, &handle), what);
-        undo.add([=, this] { destroy(device_, handle, nullptr); });
-        return handle;
+    vk::raii::ShaderModule make_module(std::span<const std::uint32_t> spirv) const {
+        return {device_, vk::ShaderModuleCreateInfo{.codeSize = spirv.size_bytes(), .pCode = spirv.data()}};
     }
 
-    VkShaderModule make_module(std::span<const std::uint32_t> spirv, Undo& undo) {
-        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-        info.codeSize = spirv.size_bytes();
-        info.pCode = spirv.data();
-        return make(vkCreateShaderModule, vkDestroyShaderModule, info, "shader module", undo);
+    vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& needs) const {
+        const auto type = static_cast<std::uint32_t>(std::countr_zero(needs.memoryTypeBits & memory_types_));
+        return {device_, vk::MemoryAllocateInfo{.allocationSize = needs.size, .memoryTypeIndex = type}};
     }
 
-    VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties, Undo& undo) {
-        std::uint32_t type = 0;
-        while (!(needs.memoryTypeBits & 1u << type) ||
-               (memory_.memoryTypes[type].propertyFlags & properties) != properties)
-            ++type;
-        VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, type};
-        return make(vkAllocateMemory, vkFreeMemory, info, "memory", undo);
-    }
-
-    Buffer make_buffer(std::span<const std::byte> data, std::size_t bytes, VkBufferUsageFlags usage,
-                       Undo& undo) {
-        VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-        info.size = bytes;
-        info.usage = usage;
-        Buffer buffer;
+    const Buffer& make_buffer(Frame& frame, std::span<const std::byte> data, std::size_t bytes) const {
+        using enum vk::BufferUsageFlagBits;
+        Buffer& buffer = frame.buffers.emplace_back();
         buffer.bytes = bytes;
-        check(vkCreateBuffer(device_, &info, nullptr, &buffer.handle), "buffer");
-        VkMemoryRequirements needs;
-        vkGetBufferMemoryRequirements(device_, buffer.handle, &needs);
-        const VkDeviceMemory memory =
-            allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, undo);
-        undo.add([=, this] { vkDestroyBuffer(device_, buffer.handle, nullptr); });
-        check(vkBindBufferMemory(device_, buffer.handle, memory, 0), "buffer memory");
-        check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "map");
+        buffer.handle = {device_,
+                         vk::BufferCreateInfo{.size = bytes,
+                                              .usage = eStorageBuffer | eUniformBuffer | eUniformTexelBuffer |
+                                                       eTransferSrc | eTransferDst}};
+        buffer.memory = allocate(buffer.handle.getMemoryRequirements());
+        buffer.handle.bindMemory(*buffer.memory, 0);
+        buffer.mapped = buffer.memory.mapMemory(0, VK_WHOLE_SIZE);
         std::memset(buffer.mapped, 0xee, bytes);
         if (!data.empty()) std::memcpy(buffer.mapped, data.data(), data.size());
         return buffer;
     }
 
-    Image make_image(VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage,
-                     Undo& undo, std::uint32_t layers = 1) {
-        VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format;
-        info.extent = {width, height, 1};
-        info.mipLevels = 1;
-        info.arrayLayers = layers;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.tiling = VK_IMAGE_TILING_OPTIMAL;
-        info.usage = usage;
-        Image image;
-        check(vkCreateImage(device_, &info, nullptr, &image.handle), "image");
-        VkMemoryRequirements needs;
-        vkGetImageMemoryRequirements(device_, image.handle, &needs);
-        const VkDeviceMemory memory = allocate(needs, 0, undo);
-        undo.add([=, this] { vkDestroyImage(device_, image.handle, nullptr); });
-        check(vkBindImageMemory(device_, image.handle, memory, 0), "image memory");
-        VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-        view.image = image.handle;
-        view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers};
-        image.view = make(vkCreateImageView, vkDestroyImageView, view, "image view", undo);
+    /// An image that stays in the general layout.
+    const Image& make_image(Frame& frame, vk::Format format, vk::Extent3D extent, std::uint32_t layers,
+                            vk::ImageUsageFlags usage) const {
+        Image& image = frame.images.emplace_back();
+        image.handle = {device_, vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
+                                                     .format = format,
+                                                     .extent = extent,
+                                                     .mipLevels = 1,
+                                                     .arrayLayers = layers,
+                                                     .usage = usage}};
+        image.memory = allocate(image.handle.getMemoryRequirements());
+        image.handle.bindMemory(*image.memory, 0);
+        const vk::ImageSubresourceRange all{vk::ImageAspectFlagBits::eColor, 0, 1, 0, layers};
+        image.view = {device_, vk::ImageViewCreateInfo{.image = *image.handle,
+                                                       .viewType = layers > 1 ? vk::ImageViewType::e2DArray
+                                                                              : vk::ImageViewType::e2D,
+                                                       .format = format,
+                                                       .subresourceRange = all}};
+        const vk::ImageMemoryBarrier change{.dstAccessMask = every_access,
+                                            .newLayout = vk::ImageLayout::eGeneral,
+                                            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                            .image = *image.handle,
+                                            .subresourceRange = all};
+        frame.commands.pipelineBarrier(every_stage, every_stage, {}, {}, {}, change);
         return image;
     }
 
-    static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags written,
-                        VkPipelineStageFlags to, VkAccessFlags read) {
-        const VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, written, read};
-        vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
+    /// What comes after sees all that was written before.
+    static void barrier(Frame& frame, vk::PipelineStageFlags after = every_stage) {
+        const vk::MemoryBarrier all{.srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
+                                    .dstAccessMask = every_access};
+        frame.commands.pipelineBarrier(every_stage, after, {}, all, {}, {});
     }
 
-    static void change_layout(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
-                              VkAccessFlags written, VkAccessFlags read) {
-        VkImageMemoryBarrier change{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-        change.srcAccessMask = written;
-        change.dstAccessMask = read;
-        change.oldLayout = from;
-        change.newLayout = to;
-        change.srcQueueFamilyIndex = change.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        change.image = image;
-        change.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                             0, 0, nullptr, 0, nullptr, 1, &change);
-    }
-
-    VkCommandBuffer begin(Undo& undo) {
-        VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
-                                         VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-        VkCommandBuffer commands = nullptr;
-        check(vkAllocateCommandBuffers(device_, &info, &commands), "command buffer");
-        undo.add([=, this] { vkFreeCommandBuffers(device_, pool_, 1, &commands); });
-        VkCommandBufferBeginInfo start{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-        start.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-        check(vkBeginCommandBuffer(commands, &start), "begin");
-        return commands;
-    }
-
-    void finish(VkCommandBuffer commands) {
-        check(vkEndCommandBuffer(commands), "end");
-        VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-        submit.commandBufferCount = 1;
-        submit.pCommandBuffers = &commands;
-        check(vkQueueSubmit(queue_, 1, &submit, nullptr), "submit");
-        check(vkQueueWaitIdle(queue_), "wait");
-    }
-
-    static VkDescriptorType descriptor_type(const Job& job, lightbin::ShaderResource resource) {
+    static vk::DescriptorType descriptor_type(const Job& job, lightbin::ShaderResource resource) {
         using lightbin::ShaderResource;
         switch (resource) {
         case ShaderResource::uniform_block:
-            return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+            return vk::DescriptorType::eUniformBuffer;
         case ShaderResource::texel_buffer:
-            return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+            return vk::DescriptorType::eUniformTexelBuffer;
         case ShaderResource::texture_2d:
-            return job.hlsl ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+            return job.hlsl ? vk::DescriptorType::eSampledImage : vk::DescriptorType::eCombinedImageSampler;
         default:
-            return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            return vk::DescriptorType::eStorageBuffer;
         }
     }
 
-    // The job's inputs in memory, and descriptor sets that point at them.
-    Descriptors bind(const Job& job, VkCommandBuffer commands, Undo& undo) {
-        Descriptors descriptors;
-        std::vector<std::vector<VkDescriptorSetLayoutBinding>> layouts;
-        std::vector<VkDescriptorPoolSize> sizes;
+    /// The job's inputs in memory, and descriptor sets that point at them.
+    void bind(const Job& job, Frame& frame) const {
+        std::vector<std::vector<vk::DescriptorSetLayoutBinding>> bindings;
+        std::vector<vk::DescriptorPoolSize> sizes;
         for (const Input& input : job.inputs) {
             if (input.binding.resource == lightbin::ShaderResource::push_constants) {
-                descriptors.push_constants = &input.bytes;
+                frame.push_constants = &input.bytes;
                 continue;
             }
             const auto set = static_cast<std::size_t>(input.binding.slot.set);
-            if (set >= layouts.size()) layouts.resize(set + 1);
-            const VkDescriptorType type = descriptor_type(job, input.binding.resource);
-            layouts[set].push_back({static_cast<std::uint32_t>(input.binding.slot.binding), type, 1,
-                                    VK_SHADER_STAGE_ALL, nullptr});
-            sizes.push_back({type, 1});
+            if (set >= bindings.size()) bindings.resize(set + 1);
+            sizes.push_back({descriptor_type(job, input.binding.resource), 1});
+            bindings[set].push_back({.binding = static_cast<std::uint32_t>(input.binding.slot.binding),
+                                     .descriptorType = sizes.back().type,
+                                     .descriptorCount = 1,
+                                     .stageFlags = vk::ShaderStageFlagBits::eAll});
         }
-
-        std::vector<VkDescriptorSetLayout> handles;
-        for (const auto& layout : layouts) {
-            VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-            info.bindingCount = static_cast<std::uint32_t>(layout.size());
-            info.pBindings = layout.data();
-            handles.push_back(
-                make(vkCreateDescriptorSetLayout, vkDestroyDescriptorSetLayout, info, "set layout", undo));
+        std::vector<vk::DescriptorSetLayout> layouts;
+        for (const auto& set : bindings) {
+            frame.layouts.emplace_back(device_, vk::DescriptorSetLayoutCreateInfo{
+                                                    .bindingCount = static_cast<std::uint32_t>(set.size()),
+                                                    .pBindings = set.data()});
+            layouts.push_back(*frame.layouts.back());
         }
-        VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, 0};
-        VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-        layout.setLayoutCount = static_cast<std::uint32_t>(handles.size());
-        layout.pSetLayouts = handles.data();
-        if (descriptors.push_constants) {
-            range.size = static_cast<std::uint32_t>(descriptors.push_constants->size());
-            layout.pushConstantRangeCount = 1;
-            layout.pPushConstantRanges = &range;
-        }
-        descriptors.layout = make(vkCreatePipelineLayout, vkDestroyPipelineLayout, layout, "pipeline layout", undo);
-        if (handles.empty()) return descriptors;
-
-        VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-        pool.maxSets = static_cast<std::uint32_t>(handles.size());
-        pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
-        pool.pPoolSizes = sizes.data();
-        const VkDescriptorPool descriptor_pool =
-            make(vkCreateDescriptorPool, vkDestroyDescriptorPool, pool, "descriptor pool", undo);
-        descriptors.sets.resize(handles.size());
-        const VkDescriptorSetAllocateInfo allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr,
-                                                     descriptor_pool, pool.maxSets, handles.data()};
-        check(vkAllocateDescriptorSets(device_, &allocation, descriptors.sets.data()), "descriptor sets");
+        const auto sets = static_cast<std::uint32_t>(layouts.size());
+        const vk::PushConstantRange range{
+            vk::ShaderStageFlagBits::eAll, 0,
+            frame.push_constants ? static_cast<std::uint32_t>(frame.push_constants->size()) : 0};
+        frame.layout = {device_, vk::PipelineLayoutCreateInfo{.setLayoutCount = sets,
+                                                              .pSetLayouts = layouts.data(),
+                                                              .pushConstantRangeCount = range.size > 0,
+                                                              .pPushConstantRanges = &range}};
+        if (layouts.empty()) return;
+        frame.pool = {device_, vk::DescriptorPoolCreateInfo{
+                                   .flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                   .maxSets = sets,
+                                   .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+                                   .pPoolSizes = sizes.data()}};
+        frame.sets = vk::raii::DescriptorSets(
+            device_,
+            {.descriptorPool = *frame.pool, .descriptorSetCount = sets, .pSetLayouts = layouts.data()});
         for (const Input& input : job.inputs)
             if (input.binding.resource != lightbin::ShaderResource::push_constants)
-                point_at(job, input, descriptors, commands, undo);
-        return descriptors;
+                point_at(job, input, frame);
+        barrier(frame);
     }
 
-    void point_at(const Job& job, const Input& input, Descriptors& descriptors, VkCommandBuffer commands,
-                  Undo& undo) {
-        VkDescriptorBufferInfo buffer_info{nullptr, 0, VK_WHOLE_SIZE};
-        VkDescriptorImageInfo image_info{nullptr, nullptr, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-        VkBufferView buffer_view = nullptr;
-        VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        write.dstSet = descriptors.sets[static_cast<std::size_t>(input.binding.slot.set)];
-        write.dstBinding = static_cast<std::uint32_t>(input.binding.slot.binding);
-        write.descriptorCount = 1;
-        write.descriptorType = descriptor_type(job, input.binding.resource);
-        write.pBufferInfo = &buffer_info;
-        write.pImageInfo = &image_info;
-        write.pTexelBufferView = &buffer_view;
-        const VkFormat format = static_cast<VkFormat>(lightbin::vk_format(input.binding.format));
-        const Buffer buffer =
-            make_buffer(input.bytes, input.bytes.size(),
-                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                        undo);
-        buffer_info.buffer = buffer.handle;
-        if (&input == &job.inputs[job.result]) {
-            result_ = buffer;
-            descriptors.result = &result_;
-        }
-        if (write.descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-            VkBufferViewCreateInfo view{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
-            view.buffer = buffer.handle;
-            view.format = format;
-            view.range = VK_WHOLE_SIZE;
-            buffer_view = make(vkCreateBufferView, vkDestroyBufferView, view, "buffer view", undo);
+    void point_at(const Job& job, const Input& input, Frame& frame) const {
+        const Buffer& buffer = make_buffer(frame, input.bytes, input.bytes.size());
+        if (&input == &job.inputs[job.result]) frame.result = &buffer;
+        const auto format = static_cast<vk::Format>(lightbin::vk_format(input.binding.format));
+        const vk::DescriptorBufferInfo buffer_info{*buffer.handle, 0, VK_WHOLE_SIZE};
+        vk::DescriptorImageInfo image_info{.sampler = *sampler_, .imageLayout = vk::ImageLayout::eGeneral};
+        vk::BufferView texel_view;
+        if (input.binding.resource == lightbin::ShaderResource::texel_buffer) {
+            const vk::BufferViewCreateInfo info{
+                .buffer = *buffer.handle, .format = format, .range = VK_WHOLE_SIZE};
+            texel_view = *frame.texel_views.emplace_back(device_, info);
         } else if (input.binding.resource == lightbin::ShaderResource::texture_2d) {
-            const Image image =
-                make_image(format, input.width, input.height,
-                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, undo);
-            change_layout(commands, image.handle, VK_IMAGE_LAYOUT_UNDEFINED,
-                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
-            VkBufferImageCopy copy{};
-            copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-            copy.imageExtent = {input.width, input.height, 1};
-            vkCmdCopyBufferToImage(commands, buffer.handle, image.handle,
-                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-            change_layout(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
-                          VK_ACCESS_SHADER_READ_BIT);
-            image_info.imageView = image.view;
-            if (!job.hlsl) {
-                const VkSamplerCreateInfo nearest{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-                image_info.sampler = make(vkCreateSampler, vkDestroySampler, nearest, "sampler", undo);
-            }
+            using enum vk::ImageUsageFlagBits;
+            const vk::Extent3D extent{input.width, input.height, 1};
+            const Image& image = make_image(frame, format, extent, 1, eSampled | eTransferDst);
+            const vk::BufferImageCopy copy{.imageSubresource = {vk::ImageAspectFlagBits::eColor, 0, 0, 1},
+                                           .imageExtent = extent};
+            frame.commands.copyBufferToImage(*buffer.handle, *image.handle, vk::ImageLayout::eGeneral, copy);
+            image_info.imageView = *image.view;
         }
-        vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
+        const vk::WriteDescriptorSet write{
+            .dstSet = *frame.sets[static_cast<std::size_t>(input.binding.slot.set)],
+            .dstBinding = static_cast<std::uint32_t>(input.binding.slot.binding),
+            .descriptorCount = 1,
+            .descriptorType = descriptor_type(job, input.binding.resource),
+            .pImageInfo = &image_info,
+            .pBufferInfo = &buffer_info,
+            .pTexelBufferView = &texel_view};
+        device_.updateDescriptorSets(write, {});
     }
 
-    static void set(VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline,
-                    const Descriptors& descriptors) {
-        vkCmdBindPipeline(commands, point, pipeline);
-        if (!descriptors.sets.empty())
-            vkCmdBindDescriptorSets(commands, point, descriptors.layout, 0,
-                                    static_cast<std::uint32_t>(descriptors.sets.size()),
-                                    descriptors.sets.data(), 0, nullptr);
-        if (descriptors.push_constants)
-            vkCmdPushConstants(commands, descriptors.layout, VK_SHADER_STAGE_ALL, 0,
-                               static_cast<std::uint32_t>(descriptors.push_constants->size()),
-                               descriptors.push_constants->data());
+    static void set(Frame& frame, vk::PipelineBindPoint point) {
+        frame.commands.bindPipeline(point, *frame.pipeline);
+        std::vector<vk::DescriptorSet> sets;
+        for (const vk::raii::DescriptorSet& each : frame.sets)
+            sets.push_back(*each);
+        if (!sets.empty()) frame.commands.bindDescriptorSets(point, *frame.layout, 0, sets, {});
+        if (frame.push_constants)
+            frame.commands.pushConstants<std::byte>(*frame.layout, vk::ShaderStageFlagBits::eAll, 0,
+                                                    *frame.push_constants);
     }
 
-    static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module) {
-        VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-        info.stage = which;
-        info.module = module;
-        info.pName = "main";
-        return info;
+    static vk::PipelineShaderStageCreateInfo stage(vk::ShaderStageFlagBits which,
+                                                   const vk::raii::ShaderModule& shader) {
+        return {.stage = which, .module = *shader, .pName = "main"};
     }
 
-    VkPipeline compute_pipeline(VkShaderModule module, VkPipelineLayout layout, Undo& undo) {
-        VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-        info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module);
-        info.layout = layout;
-        VkPipeline pipeline = nullptr;
-        check(vkCreateComputePipelines(device_, nullptr, 1, &info, nullptr, &pipeline), "compute pipeline");
-        undo.add([=, this] { vkDestroyPipeline(device_, pipeline, nullptr); });
-        return pipeline;
+    const Buffer* dispatch(const Job& job, Frame& frame, const vk::raii::ShaderModule& shader) const {
+        const vk::ComputePipelineCreateInfo info{.stage = stage(vk::ShaderStageFlagBits::eCompute, shader),
+                                                 .layout = *frame.layout};
+        frame.pipeline = {device_, nullptr, info};
+        set(frame, vk::PipelineBindPoint::eCompute);
+        frame.commands.dispatch(job.groups[0], job.groups[1], 1);
+        return frame.result;
     }
 
-    // A triangle over the viewport, which lies at job.corner in a picture that is as much larger; returns the
-    // whole picture in a buffer.
-    Buffer draw(const Job& job, VkCommandBuffer commands, VkShaderModule fragment, VkShaderModule vertex,
-                const Descriptors& descriptors, Undo& undo) {
-        const std::uint32_t width = job.width + job.corner[0], height = job.height + job.corner[1];
-        const VkFormat format = job.within.empty() ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT;
-        const Image image = make_image(format, width, height,
-                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                                       undo, job.views);
-        VkAttachmentDescription attachment{};
-        attachment.format = format;
-        attachment.samples = VK_SAMPLE_COUNT_1_BIT;
-        attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-        attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-        attachment.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-        attachment.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-        attachment.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-        attachment.finalLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-        const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-        VkSubpassDescription subpass{};
-        subpass.colorAttachmentCount = 1;
-        subpass.pColorAttachments = &reference;
-        VkSubpassDependency before_copy{};
-        before_copy.srcSubpass = 0;
-        before_copy.dstSubpass = VK_SUBPASS_EXTERNAL;
-        before_copy.srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
-        before_copy.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-        before_copy.dstStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT;
-        before_copy.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
-        VkRenderPassCreateInfo pass_info{VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
-        pass_info.attachmentCount = 1;
-        pass_info.pAttachments = &attachment;
-        pass_info.subpassCount = 1;
-        pass_info.pSubpasses = &subpass;
-        pass_info.dependencyCount = 1;
-        pass_info.pDependencies = &before_copy;
-        const std::uint32_t every_view = (1u << job.views) - 1;
-        VkRenderPassMultiviewCreateInfo multiview{VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO};
-        multiview.subpassCount = 1;
-        multiview.pViewMasks = &every_view;
-        if (job.views > 1) pass_info.pNext = &multiview;
-        const VkRenderPass pass = make(vkCreateRenderPass, vkDestroyRenderPass, pass_info, "render pass", undo);
+    /// A triangle over the viewport, which lies at job.corner in a picture that is as much larger; returns the viewport's
+    /// pixels in a buffer.
+    const Buffer* draw(const Job& job, Frame& frame, const vk::raii::ShaderModule& shader) const {
+        using enum vk::ImageUsageFlagBits;
+        const std::uint32_t width = job.width + job.corner[0], height = job.height + job.corner[1],
+                            views = job.views > 1 ? (1u << job.views) - 1 : 0;
+        const vk::Format format =
+            job.within.empty() ? vk::Format::eR32G32B32A32Uint : vk::Format::eR32G32Sfloat;
+        const Image& image =
+            make_image(frame, format, {width, height, 1}, job.views, eColorAttachment | eTransferSrc);
+        const vk::Rect2D whole{{0, 0}, {width, height}};
+        const vk::Viewport viewport{static_cast<float>(job.corner[0]),
+                                    static_cast<float>(job.corner[1]),
+                                    static_cast<float>(job.width),
+                                    static_cast<float>(job.height),
+                                    0,
+                                    1};
+        make_draw_pipeline(frame, shader, format, views, viewport, whole);
+        const vk::RenderingAttachmentInfo attachment{.imageView = *image.view,
+                                                     .imageLayout = vk::ImageLayout::eGeneral,
+                                                     .loadOp = vk::AttachmentLoadOp::eClear,
+                                                     .storeOp = vk::AttachmentStoreOp::eStore};
+        frame.commands.beginRendering({.renderArea = whole,
+                                       .layerCount = 1,
+                                       .viewMask = views,
+                                       .colorAttachmentCount = 1,
+                                       .pColorAttachments = &attachment});
+        set(frame, vk::PipelineBindPoint::eGraphics);
+        frame.commands.draw(3, 1, 0, 0);
+        frame.commands.endRendering();
+        barrier(frame);
 
-        VkFramebufferCreateInfo frame{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
-        frame.renderPass = pass;
-        frame.attachmentCount = 1;
-        frame.pAttachments = &image.view;
-        frame.width = width;
-        frame.height = height;
-        frame.layers = 1;
-        const VkFramebuffer framebuffer = make(vkCreateFramebuffer, vkDestroyFramebuffer, frame, "framebuffer", undo);
-
-        const VkRect2D whole{{0, 0}, {width, height}};
-        const VkViewport viewport{static_cast<float>(job.corner[0]),
-                                  static_cast<float>(job.corner[1]),
-                                  static_cast<float>(job.width),
-                                  static_cast<float>(job.height),
-                                  0,
-                                  1};
-        const VkPipeline pipeline =
-            draw_pipeline(vertex, fragment, viewport, whole, descriptors.layout, pass, undo);
-        const VkClearValue clear{};
-        VkRenderPassBeginInfo start{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
-        start.renderPass = pass;
-        start.framebuffer = framebuffer;
-        start.renderArea = whole;
-        start.clearValueCount = 1;
-        start.pClearValues = &clear;
-        vkCmdBeginRenderPass(commands, &start, VK_SUBPASS_CONTENTS_INLINE);
-        set(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline, descriptors);
-        vkCmdDraw(commands, 3, 1, 0, 0);
-        vkCmdEndRenderPass(commands);
-
-        const Buffer picture =
-            make_buffer({}, std::size_t{job.within.empty() ? 16u : 8u} * job.width * job.height * job.views,
-                        VK_BUFFER_USAGE_TRANSFER_DST_BIT, undo);
-        for (std::uint32_t view = 0; view < job.views; ++view) {
-            VkBufferImageCopy copy{};
-            copy.bufferOffset = picture.bytes / job.views * view;
-            copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, view, 1};
-            copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]),
-                                static_cast<std::int32_t>(job.corner[1]), 0};
-            copy.imageExtent = {job.width, job.height, 1};
-            vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                   picture.handle, 1, &copy);
-        }
-        barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-        return picture;
+        const Buffer& picture = make_buffer(
+            frame, {}, std::size_t{job.within.empty() ? 16u : 8u} * job.width * job.height * job.views);
+        const vk::BufferImageCopy copy{.imageSubresource = {vk::ImageAspectFlagBits::eColor, 0, 0, job.views},
+                                       .imageOffset = {static_cast<std::int32_t>(job.corner[0]),
+                                                       static_cast<std::int32_t>(job.corner[1]), 0},
+                                       .imageExtent = {job.width, job.height, 1}};
+        frame.commands.copyImageToBuffer(*image.handle, vk::ImageLayout::eGeneral, *picture.handle, copy);
+        return &picture;
     }
 
-    VkPipeline draw_pipeline(VkShaderModule vertex, VkShaderModule fragment, const VkViewport& viewport,
-                             const VkRect2D& scissor, VkPipelineLayout layout, VkRenderPass pass,
-                             Undo& undo) {
-        const std::array stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
-                                   stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-        const VkPipelineVertexInputStateCreateInfo no_input{
-            VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-        VkPipelineInputAssemblyStateCreateInfo triangles{
-            VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-        triangles.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-        VkPipelineViewportStateCreateInfo viewports{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
-        viewports.viewportCount = viewports.scissorCount = 1;
-        viewports.pViewports = &viewport;
-        viewports.pScissors = &scissor;
-        VkPipelineRasterizationStateCreateInfo raster{
-            VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
-        raster.lineWidth = 1;
-        VkPipelineMultisampleStateCreateInfo samples{
-            VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-        samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-        VkPipelineColorBlendAttachmentState write_all{};
-        write_all.colorWriteMask = 15;
-        VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-        blend.attachmentCount = 1;
-        blend.pAttachments = &write_all;
-        VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
-        info.stageCount = static_cast<std::uint32_t>(stages.size());
-        info.pStages = stages.data();
-        info.pVertexInputState = &no_input;
-        info.pInputAssemblyState = &triangles;
-        info.pViewportState = &viewports;
-        info.pRasterizationState = &raster;
-        info.pMultisampleState = &samples;
-        info.pColorBlendState = &blend;
-        info.layout = layout;
-        info.renderPass = pass;
-        VkPipeline pipeline = nullptr;
-        check(vkCreateGraphicsPipelines(device_, nullptr, 1, &info, nullptr, &pipeline), "pipeline");
-        undo.add([=, this] { vkDestroyPipeline(device_, pipeline, nullptr); });
-        return pipeline;
+    void make_draw_pipeline(Frame& frame, const vk::raii::ShaderModule& shader, vk::Format format,
+                            std::uint32_t views, const vk::Viewport& viewport,
+                            const vk::Rect2D& scissor) const {
+        const std::array stages = {stage(vk::ShaderStageFlagBits::eVertex, vertex_),
+                                   stage(vk::ShaderStageFlagBits::eFragment, shader)};
+        const vk::PipelineVertexInputStateCreateInfo no_input;
+        const vk::PipelineInputAssemblyStateCreateInfo triangles{.topology =
+                                                                     vk::PrimitiveTopology::eTriangleList};
+        const vk::PipelineViewportStateCreateInfo viewports{
+            .viewportCount = 1, .pViewports = &viewport, .scissorCount = 1, .pScissors = &scissor};
+        const vk::PipelineRasterizationStateCreateInfo raster{.lineWidth = 1};
+        const vk::PipelineMultisampleStateCreateInfo one_sample;
+        using enum vk::ColorComponentFlagBits;
+        const vk::PipelineColorBlendAttachmentState write_all{.colorWriteMask = eR | eG | eB | eA};
+        const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = 1, .pAttachments = &write_all};
+        const vk::PipelineRenderingCreateInfo target{
+            .viewMask = views, .colorAttachmentCount = 1, .pColorAttachmentFormats = &format};
+        const vk::GraphicsPipelineCreateInfo info{.pNext = &target,
+                                                  .stageCount = 2,
+                                                  .pStages = stages.data(),
+                                                  .pVertexInputState = &no_input,
+                                                  .pInputAssemblyState = &triangles,
+                                                  .pViewportState = &viewports,
+                                                  .pRasterizationState = &raster,
+                                                  .pMultisampleState = &one_sample,
+                                                  .pColorBlendState = &blend,
+                                                  .layout = *frame.layout};
+        frame.pipeline = {device_, nullptr, info};
     }
 
-    VkInstance instance_ = nullptr;
-    VkDebugUtilsMessengerEXT messenger_ = nullptr;
-    VkPhysicalDevice physical_ = nullptr;
-    VkPhysicalDeviceMemoryProperties memory_{};
-    VkDevice device_ = nullptr;
-    VkQueue queue_ = nullptr;
-    VkCommandPool pool_ = nullptr;
-    std::uint32_t family_ = 0;
-    std::string name_;
-    std::vector<std::uint32_t> vertex_;
-    Buffer result_;
+    static constexpr vk::PipelineStageFlagBits every_stage = vk::PipelineStageFlagBits::eAllCommands;
+    static constexpr vk::AccessFlags every_access =
+        vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+
     int messages_ = 0;
-    bool expecting_ = false;
-    Undo undo_;  // the last member, as its steps use the others
+    std::uint32_t memory_types_ = 0;  // a bit for each that the processor reads and writes
+    vk::raii::Context context_;
+    vk::raii::Instance instance_ = make_instance();
+    vk::raii::DebugUtilsMessengerEXT messenger_ = make_messenger();
+    vk::raii::PhysicalDevice physical_ = std::move(vk::raii::PhysicalDevices(instance_)[0]);
+    vk::raii::Device device_ = make_device();
+    vk::raii::Queue queue_{device_, 0, 0};
+    vk::raii::CommandPool pool_{device_, vk::CommandPoolCreateInfo{}};
+    vk::raii::Sampler sampler_{device_, vk::SamplerCreateInfo{}};  // nearest
+    vk::raii::ShaderModule vertex_ = make_module(compile_spirv(R"(#version 450
+void main() {
+    gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+)",
+                                                               EShLangVertex, false));
 };

@@ -19,10 +19,10 @@ int main(int count, char** arguments) {
     bool culls = true;
     using enum lightbin::ShaderLanguage;
     if (count > 1 && std::string(arguments[1]) == "multiview")
-        run_multiview(device, glsl_vulkan, share, tally);
+        run_readers(device, multiview_runs(glsl_vulkan), share, tally);
     else
         for (const auto language : {glsl_vulkan, hlsl_5_1}) {
-            run_readers(device, language, share, tally, true, true);
+            run_readers(device, reader_runs(language, true, true), share, tally);
             run_reductions(device, language, false, share, tally);
             culls = CullTests(language, share).run(device) && culls;
         }

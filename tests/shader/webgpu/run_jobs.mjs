@@ -6,23 +6,13 @@ import { Buffer } from 'node:buffer';
 import { spawn } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
 import process from 'node:process';
+import { createInterface } from 'node:readline';
 
 async function find_gpu(module) {
     if (!module) return navigator.gpu;
     const { create, globals } = await import(module);
     Object.assign(globalThis, globals);
     return create([]);
-}
-
-async function* lines_of(stream) {
-    let parts = [];
-    for await (let chunk of stream) {
-        for (let end; (end = chunk.indexOf(10)) >= 0; chunk = chunk.subarray(end + 1)) {
-            yield Buffer.concat([...parts, chunk.subarray(0, end)]).toString();
-            parts = [];
-        }
-        parts.push(chunk);
-    }
 }
 
 const full_triangle = `@vertex fn main(@builtin(vertex_index) i : u32) -> @builtin(position) vec4f {
@@ -246,7 +236,7 @@ const device = new Device(gpu, await adapter.requestDevice({ requiredFeatures: w
 const writer = spawn(`${folder}/write_wgsl_jobs`, share, { stdio: ['pipe', 'pipe', 'inherit'] });
 const written = new Promise(resolve => writer.on('close', (code, signal) => resolve(code ?? signal)));
 let texts = 0, runs = 0, bad = 0, left_out = 0;
-for await (const line of lines_of(writer.stdout)) {
+for await (const line of createInterface({ input: writer.stdout })) {
     if (!line.startsWith('{')) {
         console.log(line);
         continue;
