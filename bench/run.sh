@@ -44,12 +44,11 @@
 #       tables, frames.txt; all rows, frames.csv; of the paths frames_paths.csv and the plots frames_times and
 #       frames_evaluations, .svg and .png. --pictures: a PNG a view in build/bench, too. What the repository has of a
 #       machine is made by `sh bench/run.sh frames --into=bench/results/llvmpipe-zen4`, or what its processor is.
-#   gpu [--quick] [--gl | --vulkan]
+#   gpu [--quick]
 #       Builds on the GPU by shader_cull beside builds on the CPU with their upload, of 1,000 to 100,000 lights and of
 #       Bevy's many_lights: milliseconds by the GPU's clock, bytes, tests of a light against a cell, and how many entries the
-#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. Up to 10,000 lights in plain
-#       tiles also beside a build that tests every light in every tile. In OpenGL and in Vulkan,
-#       or in the one that is named. Some minutes where they draw on the CPU, --quick one. Writes build/bench/gpu.csv.
+#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. In OpenGL. Some minutes
+#       where that draws on the CPU, --quick one. Writes build/bench/gpu.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -69,7 +68,7 @@ binning) options="--quick --filter=..." ;;
 advise) options="--quick --avx2 --simd128 --scalar" ;;
 frames) options="--quick --counts --pictures --into=..." ;;
 c_side) options="" words="a number" pattern='[0-9.]+' ;;
-gpu) options="--quick --gl --vulkan" words="" pattern="" ;;
+gpu) words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
 forms=$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')
@@ -82,7 +81,6 @@ targets=$program
 case $program in
 frames | gpu | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
 esac
-[ $program != gpu ] || packages="$packages libvulkan-dev mesa-vulkan-drivers glslang-dev spirv-tools"
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
 
