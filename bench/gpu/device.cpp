@@ -17,7 +17,8 @@ void check(const std::string& what) {
 }  // namespace
 
 GpuDevice::GpuDevice()
-    : context_(430), name_(std::string("OpenGL on ") + reinterpret_cast<const char*>(glGetString(GL_RENDERER))),
+    : context_(430),
+      name_(std::string("OpenGL on ") + reinterpret_cast<const char*>(glGetString(GL_RENDERER))),
       software_(name_.find("llvmpipe") != std::string::npos || name_.find("softpipe") != std::string::npos) {}
 
 void GpuDevice::make_buffer(const std::string& name, std::size_t bytes) {

@@ -76,8 +76,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     make("lists", plan_.bytes.lists);
     fill("lights", bytes_of(first.lights));
     fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
-    if (options.depth_test)
-        fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
+    if (options.depth_test) fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
 }
 
 double GpuBuild::upload(const GpuFrame& frame) {

@@ -23,7 +23,8 @@ using lightbin::Slicing;
 class Measuring {
 public:
     explicit Measuring(bool quick) : quick_(quick) {
-        turns_ = device_.is_software() ? TurnsOf{quick ? 1 : 3, 0} : TurnsOf{quick ? 15 : 101, quick ? 20 : 60};
+        turns_ =
+            device_.is_software() ? TurnsOf{quick ? 1 : 3, 0} : TurnsOf{quick ? 15 : 101, quick ? 20 : 60};
         std::printf("%s\n", device_.name().c_str());
         if (device_.is_software())
             std::printf("This device is the CPU: its times say little about a GPU's. Compare lists, tests "
@@ -50,8 +51,8 @@ private:
         measure_tiles(source);
         if (with_bounds) measure_one<Options{.depth_test = true}>(source, "box, 16 px", 16);
         measure_one<Options{.slicing = Slicing::clusters}>(source, "clusters, 64 px", 64);
-        measure_one<Options{.depth_test = true, .slicing = Slicing::clusters}>(
-            source, "clusters+box, 64 px", 64);
+        measure_one<Options{.depth_test = true, .slicing = Slicing::clusters}>(source, "clusters+box, 64 px",
+                                                                               64);
     }
 
     template <Options options>

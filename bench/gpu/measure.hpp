@@ -95,7 +95,8 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     for (const GpuFrame& frame : source.frames)
         longest = std::max<std::size_t>(longest, cpu(frame, view).ids().size());
     const std::size_t room = longest + longest / 8 + 1024;
-    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr, bounds);
+    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr,
+                 bounds);
     row.scratch = std::size_t(gpu.plan().bytes.scratch);
     device.make_buffer("sent ranges", gpu.plan().bytes.tiles);
     device.make_buffer("sent ids", 4 * room);
