@@ -12,6 +12,7 @@
 #include "goals.hpp"
 #include "lens.hpp"
 #include "memory.hpp"
+#include "pool.hpp"
 #include "sources.hpp"
 #include "spots_sets.hpp"
 #include "tiers.hpp"
@@ -25,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <functional>
 #include <regex>
@@ -105,19 +107,29 @@ template <Options options, class Time> void add_cases(const std::string& name, T
     });
 }
 
-/// What so many threads would do at once, one after the other on this thread: `saved` grows by what the longest of them
-/// leaves for the others.
-struct OneByOne {
-    double saved = 0;
+/// The processor time that this thread takes for some work.
+template <class Body> double own_seconds(Body body) {
+    const auto now = [] {
+        std::timespec time;
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+    };
+    const double start = now();
+    body();
+    return now() - start;
+}
+
+/// Runs parts on threads, and adds up the processor time of the longest part of each step.
+struct Steps {
+    explicit Steps(std::size_t threads) : pool(threads) {}
+
+    Pool pool;
+    double longest = 0;
 
     template <class Body> void operator()(std::size_t n, const Body& body) {
-        double sum = 0, longest = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const double part = seconds([&] { body(i); });
-            sum += part;
-            longest = std::max(longest, part);
-        }
-        saved += sum - longest;
+        std::vector<double> parts(n);
+        pool(n, [&](std::size_t i) { parts[i] = own_seconds([&] { body(i); }); });
+        longest += *std::ranges::max_element(parts);
     }
 };
 
@@ -178,13 +190,17 @@ void time_threads(const std::string& name, const Set<Frame>& set, std::size_t th
     const std::vector<Frame>& frames = set.frames();
     const lightbin::View view = Lens().view(usual_tile_size(options));
     Build<options> build(usual_tile_size(options));
+    Steps steps(threads);
     std::vector<double> alone, together;
-    for (const double end = time_now() + seconds_a_case; alone.size() < 6 || time_now() < end;) {
-        const Lights& lights = frames[alone.size() % frames.size()].lights;
-        OneByOne loop;
-        alone.push_back(seconds([&] { build(view, lights); }));
-        const double in_all = seconds([&] { build(view, lights, {threads, loop}); });
-        together.push_back(in_all - loop.saved);
+    const double end = time_now() + seconds_a_case;
+    for (std::size_t turn = 0; turn < 4 * frames.size() || time_now() < end; ++turn) {
+        const Lights& lights = frames[turn % frames.size()].lights;
+        const bool several = turn / frames.size() % 2 == 1;
+        steps.longest = 0;
+        const double own = own_seconds([&] {
+            build(view, lights, several ? lightbin::Parallel(threads, steps) : lightbin::Parallel());
+        });
+        (several ? together : alone).push_back(own + steps.longest);
     }
     results.push_back({name, to_string(options.isa), "one", median(alone) / median(together), 0});
 }
@@ -264,9 +280,10 @@ template <Options options = Options{}> void add_builds(const Set<Frame>& set, in
 template <Options options = Options{}> void add_threads(const Set<Frame>& set) {
     for (const std::size_t threads : {2u, 4u, 8u, 16u}) {
         const std::string name = set.full_name() + "/" + to_string(options.slicing) + "/" +
-                                 name_of(options.depth_test) + text("/%zu threads/", threads);
+                                 name_of(options.depth_test) + text("/%zu threads", threads);
         const auto add = [&]<Options one>() {
-            cases.push_back({name + to_string(one.isa), [=] { time_threads<one>(name, set, threads); }});
+            cases.push_back(
+                {name + "/" + to_string(one.isa), [=] { time_threads<one>(name, set, threads); }});
         };
 #if defined(LIGHTBIN_X86)
         visit_tier<with(options, Isa::avx2)>(add);
