@@ -12,9 +12,9 @@
 //   evals, needed   light evaluations a drawn pixel, and of those lights that reach its point; ratio: of the two
 //   front           1 on the Pareto front: no other is both faster and nearer to what is needed
 //   misses          lights that reach a pixel and are not in its list. For ours they end the run
-// and a row for each place to end lights, `ends hard` and `ends smooth` (cutoff.hpp), of 16-pixel tiles with `box`:
+// and a row for each place to end lights, `ends smooth` (cutoff.hpp), of 16-pixel tiles with `box`:
 //   cutoff          in parts of white
-//   rmse, rmse_restored, largest   of the picture to that of endless lights, white = 1
+//   rmse, rmse_restored   of the picture to that of endless lights, white = 1
 #include "arguments.hpp"
 #include "console.hpp"
 #include "cutoff.hpp"
@@ -70,7 +70,6 @@ double total_without_bounds(const Result& result) {
 }
 
 struct Ending {
-    const char* window;
     double part, total, evaluations;
     Difference difference;
 };
@@ -252,8 +251,7 @@ std::vector<Ending> study_endings(const PreparedView& view) {
         const double evaluations = tiled.evaluations(built.ranges),
                      shade = tiled.all_evaluations(built.ranges) * evaluation_ns * 1e-6,
                      total = 1e3 * (tiled.reduce_seconds + median(builds)) + upload_ms(built) + shade;
-        endings.push_back({"hard", 1.0 / k, total, evaluations, study.hard(1.0 / k)});
-        endings.push_back({"smooth", 1.0 / k, total, evaluations, study.smooth(1.0 / k)});
+        endings.push_back({1.0 / k, total, evaluations, study.difference(1.0 / k)});
     }
     return endings;
 }
@@ -297,22 +295,20 @@ void write_csv(const std::vector<SceneReport>& reports) {
     std::FILE* const csv = open_report(
         "report.csv",
         "scene,lights,views,method,tile_px,bounds_ms,build_ms,upload_ms,shade_ms,total_ms,total_p10_ms,"
-        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored,"
-        "largest");
+        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored");
     for (const SceneReport& report : reports) {
         for (const Result& r : report.results)
             std::fprintf(csv,
                          "%s,%zu,%zu,%s,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.4f,%.1f,%d,%"
-                         "llu,%g,,,,\n",
+                         "llu,%g,,,\n",
                          report.name.c_str(), report.lights, report.views, r.way.method, r.way.tile_size,
                          r.bounds, r.build, r.upload, r.shade, r.total, r.low, r.high, r.evaluations,
                          report.needed, r.ratio, r.kilobytes, r.front,
                          static_cast<unsigned long long>(r.misses), evaluation_ns);
         for (const Ending& e : report.endings)
-            std::fprintf(csv, "%s,%zu,%zu,ends %s,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f,%.5f\n",
-                         report.name.c_str(), report.lights, report.views, e.window, e.total, e.evaluations,
-                         evaluation_ns, e.part, e.difference.rmse, e.difference.rmse_restored,
-                         e.difference.largest);
+            std::fprintf(csv, "%s,%zu,%zu,ends smooth,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f\n",
+                         report.name.c_str(), report.lights, report.views, e.total, e.evaluations,
+                         evaluation_ns, e.part, e.difference.rmse, e.difference.rmse_restored);
     }
     std::fclose(csv);
 }
@@ -344,7 +340,6 @@ std::string sentence(const SceneReport& report) {
 std::string ending_sentence(const SceneReport& report) {
     const Ending* last = nullptr;
     for (const Ending& ending : report.endings) {
-        if (std::string_view(ending.window) != "smooth") continue;
         last = &ending;
         if (ending.difference.rmse_restored <= 0.01) break;
     }

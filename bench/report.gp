@@ -28,8 +28,7 @@ if (ARG1 eq "methods") {
 } else {
     ends(window) = rows("$4 == \"ends ".window."\"", "1 / $20, $10, $21, $22")
     set ylabel "difference, white = 1" offset 1.5, 0
-    plot ends("hard") using 2:3 with linespoints linetype 2 title "hard end", \
-        ends("smooth") using 2:3 with linespoints linetype 1 title "smooth end", \
+    plot ends("smooth") using 2:3 with linespoints linetype 1 title "smooth end", \
         ends("smooth") using 2:4 with linespoints linetype 3 title "smooth, mean restored", \
         ends("smooth") using 2:4:(sprintf("1/%g", $1)) with labels offset 0, -0.7 font ",12" textcolor linetype 3 notitle
 }

@@ -3,45 +3,32 @@
 # are missing, builds in build/bench and runs there. Leave the machine alone while it runs.
 #
 #   binning [--quick] [--filter=REGEX]
-#       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
-#       view-space vec4s (^sources), with clusters and z-bins (^slices), of spots as a ratio to spheres (^spots), of boxes
-#       as a ratio to spheres and to spots (^boxes), and what threads gain where none waits for a core (threads): all, or
-#       those whose names the expression matches, which it prints. Says how many goals are met and what is missed. Some
-#       minutes, --quick half a one. Writes build/bench/binning_goals.csv, and what was timed, binning.csv: a row for each
-#       case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N tiles of 32
-#       pixels; box is held against the baseline without Z; for no light ns_per_light is a whole build's.
+#       (the default) Times of whole builds, over the flat loop or what else is named: all, or the cases whose names the
+#       expression matches, which it prints: ^sources, ^slices, ^spots, ^boxes, threads. Writes build/bench/binning.csv, a
+#       row for each case, instruction set and thing that it is a ratio to, and binning_goals.csv. The sets fieldN have a
+#       mean footprint of N tiles of 32 pixels; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
-#       of so many nanoseconds, .02 if none are given) and how many light evaluations it makes over those needed, on made scenes and those of bench/scenes, or on the named ones; and
-#       what the picture loses by where lights end, and where they may for an RMSE of 1 %. A table with verdicts and a
-#       sentence a scene, which also says what advise() chooses and what that costs over the best. Four minutes, --quick one. Writes build/bench/report.html and report.csv.
+#       of so many nanoseconds, .02 if none are given) and how many light evaluations it makes over those needed, on made
+#       scenes and those of bench/scenes, or on the named ones; what advise() chooses; and what the picture loses by where
+#       lights end. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
-#       What each footprint and depth test and clusters list beyond the exact set, and what they miss, each pair of a cell and
-#       a light decided in exact arithmetic; of single spots by half angle, listed as the spheres of their ranges, as their
-#       least spheres and as spots; and of single boxes, listed as spheres and as boxes. Writes build/bench/error.csv,
-#       spots_error.csv and boxes_error.csv.
+#       What each depth test and clusters list beyond the exact set, and what they miss; of single spots by half angle and
+#       of single boxes by shape, too. Writes build/bench/error.csv, spots_error.csv and boxes_error.csv.
 #   c_side [SECONDS]
-#       Whole builds through lightbin.h over the same in C++, in turns, on lights in structs of the caller's. Each line is
-#       the median of five programs that differ in the order of their functions, with the least and the greatest; each
-#       program takes half a second, or so many, for it. Three minutes.
+#       Whole builds through lightbin.h over the same in C++, in turns. Each line is the median of five programs that
+#       differ in the order of their functions; each takes half a second, or so many, for it. Three minutes.
 #   stability [--quick]
-#       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
-#       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
-#       an error. A line a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
-#       Some minutes, --quick half a one.
-#   frames [--quick] [--counts] [--pictures] [--into=FOLDER] [SCENE.glb ...]
+#       How far off the screen bounds of lights are under stiff and extreme conditions: the library's and the textbooks', in
+#       float and in double. A miss by the library is an error. Writes build/bench/stability.html and stability.csv.
+#   frames [--quick] [--counts] [--into=FOLDER] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of
-#       bench/scenes): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten
-#       minutes at most with a software renderer, --quick two; --counts leaves the times out, for a machine that is at work. A
-#       scene of ten views or more is taken for a camera's path. Writes to build/bench, or to FOLDER, which it makes: its
-#       tables, frames.txt; all rows, frames.csv; of the paths frames_paths.csv and the plots frames_times and
-#       frames_evaluations, .svg and .png. --pictures: a PNG a view in build/bench, too. What the repository has of a
-#       machine is made by `sh bench/run.sh frames --into=bench/results/llvmpipe-zen4`, or what its processor is.
+#       bench/scenes). --counts leaves the times out, for a machine that is at work. A scene of ten views or more is taken
+#       for a camera's path. Writes to build/bench, or to FOLDER, which it makes: frames.txt, frames.csv, frames_paths.csv
+#       and the plots frames_times and frames_evaluations, .svg and .png.
 #   gpu [--quick]
-#       Builds on the GPU by shader_cull beside builds on the CPU with their upload, of 1,000 to 100,000 lights and of
-#       Bevy's many_lights: milliseconds by the GPU's clock, bytes, tests of a light against a cell, and how many entries the
-#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. In OpenGL. Some minutes
-#       where that draws on the CPU, --quick one. Writes build/bench/gpu.csv.
+#       Builds on the GPU by shader_cull beside builds on the CPU with their upload, in OpenGL. GPU's lists that lack an
+#       entry of the CPU's, or are out of order, are an error. Writes build/bench/gpu.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -58,7 +45,7 @@ esac
 options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
 binning) options="--quick --filter=..." words="" pattern="" ;;
-frames) options="--quick --counts --pictures --into=..." ;;
+frames) options="--quick --counts --into=..." ;;
 c_side) options="" words="a number" pattern='[0-9.]+' ;;
 gpu) words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
