@@ -5,8 +5,8 @@
 #   binning [--quick] [--filter=REGEX]
 #       (the default) Times of whole builds, over the flat loop or what else is named: all, or the cases whose names the
 #       expression matches, which it prints: ^sources, ^slices, ^spots, ^boxes, threads. Writes build/bench/binning.csv, a
-#       row for each case, instruction set and thing that it is a ratio to, and binning_goals.csv. The sets fieldN have a
-#       mean footprint of N tiles of 32 pixels; for no light ns_per_light is a whole build's.
+#       row for each case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N
+#       tiles of 32 pixels; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds, .02 if none are given) and how many light evaluations it makes over those needed, on made
