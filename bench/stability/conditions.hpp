@@ -19,7 +19,6 @@ using oracle::Aim, oracle::Camera, oracle::Lens, oracle::Light, oracle::Matrix, 
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::vector<Light> cones;     ///< of spots: axis, and as w the cosine of the half angle
     std::optional<Matrix> world;  ///< the view matrix, where lights are in world space
 };
 
@@ -46,7 +45,6 @@ struct Family {
     Scene (*make)(Random&, double value, std::size_t lights) = nullptr;
     DepthScene (*make_depths)(Random&, double value, std::size_t lights) = nullptr;
     bool flush = false;  ///< FTZ and DAZ are set
-    bool spots = false;
 };
 
 inline std::string short_text(double value) {
@@ -86,7 +84,7 @@ inline Lens lens_from(double near_plane, Random& random) {
     return lens;
 }
 inline Scene scene_of(const Lens& lens, const oracle::Screen& screen = full_hd) {
-    return {oracle::camera_of("", lens, screen), {}, {}, {}};
+    return {oracle::camera_of("", lens, screen), {}, {}};
 }
 
 // The lights.
@@ -269,26 +267,6 @@ inline Scene tile_count(Random& random, double tiles, std::size_t lights) {
     return scene;
 }
 
-inline Scene cone_angle(Random& random, double degrees, std::size_t lights) {
-    Scene scene = scene_of(lens_of(), {1920, 1080, 1, false});
-    const Aim aim(scene.camera);
-    // Near 90 degrees the cosine is taken from the angle's distance to that.
-    const double radians = std::acos(-1.0) / 180,
-                 cosine = degrees > 45 ? std::sin((90 - degrees) * radians) : std::cos(degrees * radians);
-    for (std::size_t i = 0; i < lights; ++i) {
-        const double d = random.power_of_two(0, 7.5), r = aim.half_height(d) * random.power_of_two(-4, 0);
-        scene.lights.push_back(
-            aim.light(aim.at(0, aim.pixel(0, random, 0), d), aim.at(1, aim.pixel(1, random, 0), d), d, r));
-        double axis[3], length = 0;
-        for (double& part : axis)
-            part = random.normal(), length += part * part;
-        length = std::sqrt(length);
-        scene.cones.push_back({static_cast<float>(axis[0] / length), static_cast<float>(axis[1] / length),
-                               static_cast<float>(axis[2] / length), static_cast<float>(cosine)});
-    }
-    return scene;
-}
-
 inline Scene denormal(Random& random, double radius, std::size_t lights) {
     Lens lens = lens_of();
     lens.near_plane = 2e-38, lens.far_plane = oracle::infinite;
@@ -329,14 +307,8 @@ inline DepthScene slices_apart(Random& random, double ulps, std::size_t lights) 
 }
 
 inline std::vector<Family> all_families() {
-    const double smallest = 0x1p-24;
     std::vector<Condition> infinite_too = decades(1, 12);
     infinite_too.push_back({"inf", oracle::infinite});
-    std::vector<Condition> angles =
-        values({smallest, 0x1p-16, 0x1p-8, 1, 10, 45, 80, 89, 90 - 0x1p-8, 90 - 0x1p-16});
-    angles.front().label = "2^-24", angles[1].label = "2^-16", angles[2].label = "2^-8";
-    angles[8].label = "90-2^-8", angles[9].label = "90-2^-16";
-    angles.push_back({"90-2^-24", 90 - smallest});
     const std::vector<Condition> small = decades(-38, -45, -1);
     return {
         {"ordinary",
@@ -391,13 +363,6 @@ inline std::vector<Family> all_families() {
          "Lights of a few pixels in pictures of one-pixel tiles.",
          "A float has 24 bits, a pixel's number takes 15 of them.", values({1, 8, 64, 512, 4096, 32768}),
          tile_count},
-        {"cones", "half angles of spots", "degrees",
-         "Spots from 2^-24 degrees, where the cosine is 1 and the spot a ray, to 2^-24 short of 90. Tiles "
-         "are pixels. There are no textbook formulas of a spot's own bounds: theirs are of a sphere or a "
-         "box around it.",
-         "The sine of a small angle is all cancelled in a cosine; close to 90 degrees a cone's box grows "
-         "without end.",
-         angles, cone_angle, nullptr, false, true},
         {"denormals", "denormal radii", "radius",
          "A scene at the bottom of the number line: near plane at 2e-38, radii from 1e-38 to 1e-45.",
          "A denormal float has fewer digits the smaller it is, and the square of every number here is 0.",
