@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A whole build, lights in to lists out, against the flat baseline measured in turns in the same run, on rotating light
-// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots
-// against spheres, boxes against both. Says how many of the project's goals are met and which are missed by most, and
-// writes binning.csv and binning_goals.csv.
+// sets; with clusters and z-bins; from world space and structs against view-space vec4s; spots against spheres, boxes
+// against both; and what threads gain. Writes binning.csv.
 #include "arguments.hpp"
 #include "boxes_sets.hpp"
 #include "builds.hpp"
 #include "console.hpp"
 #include "flat.hpp"
-#include "gains.hpp"
 #include "glb_scenes.hpp"
-#include "goals.hpp"
 #include "lens.hpp"
 #include "memory.hpp"
+#include "pool.hpp"
 #include "sources.hpp"
 #include "spots_sets.hpp"
 #include "tiers.hpp"
@@ -20,32 +18,36 @@
 #include "world.hpp"
 
 #include <lightbin/binner.hpp>
-#include <lightbin/encode.hpp>
 #include <lightbin/masks.hpp>
-
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <functional>
 #include <regex>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace {
 
-using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Options;
 using lightbin::Slicing;
+
+/// What one case takes on one instruction set, as a ratio to something that was timed in turns with it.
+struct Timed {
+    std::string name, tier;
+    std::string to;  ///< what the ratio is to
+    double ratio;    ///< of the medians; where it is to one thread, how many times as fast several are
+    double spread;   ///< from the 10th to the 90th percentile of the turns' own ratios
+    double ns_per_light = 0, entries_per_light = 0;
+};
 
 double seconds_a_case = 0.3;
 std::vector<Timed> results;
@@ -113,16 +115,30 @@ template <Options options, class Time> void add_cases(const std::string& name, T
     });
 }
 
-/// lightbin's work on at most so many of oneTBB's threads.
-class TbbLoop {
-public:
-    explicit TbbLoop(int threads) : arena_(threads) {}
-    template <class Body> void operator()(std::size_t n, const Body& body) {
-        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
-    }
+/// The processor time that this thread takes for some work.
+template <class Body> double own_seconds(Body body) {
+    const auto now = [] {
+        std::timespec time;
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+    };
+    const double start = now();
+    body();
+    return now() - start;
+}
 
-private:
-    tbb::task_arena arena_;
+/// Runs parts on threads, and adds up the processor time of the longest part of each step.
+struct Steps {
+    explicit Steps(std::size_t threads) : pool(threads) {}
+
+    Pool pool;
+    double longest = 0;
+
+    template <class Body> void operator()(std::size_t n, const Body& body) {
+        std::vector<double> parts(n);
+        pool(n, [&](std::size_t i) { parts[i] = own_seconds([&] { body(i); }); });
+        longest += *std::ranges::max_element(parts);
+    }
 };
 
 /// The views of frames. Those that frames have in common are one, as a program would have it: it stays in the cache.
@@ -146,20 +162,16 @@ struct FrameViews {
     std::vector<std::size_t> view_of;
 };
 
-/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million
-/// lights against reading them. Then what threads gain, if there are several.
-template <Options options>
-void time_build(const std::string& name, const Set<Frame>& set, int tile_size, int thread_count) {
+/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million lights against
+/// reading them.
+template <Options options> void time_build(const std::string& name, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const FrameViews views(frames, tile_size);
-    TbbLoop loop(thread_count);
-    const lightbin::Parallel threads =
-        thread_count > 1 ? lightbin::Parallel(std::size_t(thread_count), loop) : lightbin::Parallel();
     Build<options> build(tile_size);
     Flat<float> flat;
     std::vector<char> table(sizeof(lightbin::ListRange) * views.views[0].tile_count());
     std::vector<Work<Frame>> works = {
-        [&](const Frame& frame) { return build(views.view(frame), frame.lights, threads); },
+        [&](const Frame& frame) { return build(views.view(frame), frame.lights); },
         [&](const Frame& frame) {
             flat.build<false>(views.flat_view(frame), frame.lights, nullptr, nullptr);
             return flat.indices.size();
@@ -178,15 +190,27 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
     add_result(name, options, "flat", turns, 0, 1, set.lights);
     add_result(name, options, "clearing", turns, 0, 2, set.lights);
     if (works.size() > 3) add_result(name, options, "reading", turns, 0, 3, set.lights);
-    if (thread_count == 1) return;
-    const Gains gains =
-        measure_gains(threads, seconds_a_case, [&](const lightbin::Parallel& some_threads, std::size_t turn) {
-            const Frame& frame = frames[turn % frames.size()];
-            return build(views.view(frame), frame.lights, some_threads);
+}
+
+/// How many times as fast threads are as one, where none waits for a core.
+template <Options options>
+void time_threads(const std::string& name, const Set<Frame>& set, std::size_t threads) {
+    const std::vector<Frame>& frames = set.frames();
+    const lightbin::View view = Lens().view(usual_tile_size(options));
+    Build<options> build(usual_tile_size(options));
+    Steps steps(threads);
+    std::vector<double> alone, together;
+    const double end = time_now() + seconds_a_case;
+    for (std::size_t turn = 0; turn < 4 * frames.size() || time_now() < end; ++turn) {
+        const Lights& lights = frames[turn % frames.size()].lights;
+        const bool several = turn / frames.size() % 2 == 1;
+        steps.longest = 0;
+        const double own = own_seconds([&] {
+            build(view, lights, several ? lightbin::Parallel(threads, steps) : lightbin::Parallel());
         });
-    for (const auto& [to, gain] :
-         {std::pair("one", gains.awake), {"one from sleep", gains.asleep}, {"one at arithmetic", gains.sums}})
-        results.push_back({name, to_string(options.isa), to, gain, 0});
+        (several ? together : alone).push_back(own + steps.longest);
+    }
+    results.push_back({name, to_string(options.isa), "one", median(alone) / median(together), 0});
 }
 
 /// Clusters against the baseline, z-bins against the same build without them.
@@ -242,7 +266,7 @@ template <Options options> void time_sources(const std::string& name, const Set<
     const std::vector<WorldFrame>& frames = set.frames();
     SourceBuilds<options> builds(frames[0].view.lens, 32);
     std::vector<Work<WorldFrame>> works;
-    const int sources = frames[0].structs.empty() ? view_structs : loop_structs + 1;
+    const int sources = frames[0].structs.empty() ? view_structs : world_structs + 1;
     for (int i = 0; i < sources; ++i) {
         const Source source = Source(i);
         works.push_back([&builds, source](const WorldFrame& frame) { return builds(source, frame); });
@@ -255,29 +279,6 @@ template <Options options> void time_sources(const std::string& name, const Set<
     for (std::size_t source = 0; source < works.size(); ++source)
         add(source, view_vec4s);
     add(world_vec4s, loop_vec4s);
-    if (works.size() > world_structs) add(world_structs, loop_structs);
-}
-
-/// Several views of world-space lights, binned one after the other by one Binner, against the first of them, of other
-/// frames.
-template <Options options> void time_views(const std::string& name, const Set<WorldFrame>& set) {
-    const std::vector<WorldFrame>& frames = set.frames();
-    for (const SeveralViews& views : several_views(frames[0].view.lens)) {
-        const lightbin::View view = views.lens.view(32);
-        Build<options> build(32);
-        const auto first_ones = [&](std::size_t count) {
-            return [&, count](const WorldFrame& frame) {
-                std::size_t entries = 0;
-                for (std::size_t i = 0; i < count; ++i)
-                    entries += build(
-                        view, lightbin::world_space(frame.lights, views.from_camera[i] * frame.view_matrix));
-                return entries;
-            };
-        };
-        const Turns turns = take_turns<WorldFrame>(
-            frames, 2 * seconds_a_case, {first_ones(views.from_camera.size()), first_ones(1)}, true);
-        add_result(name + "/" + views.name, options, "the first", turns, 0, 1, set.lights);
-    }
 }
 
 /// Spots or boxes against as many spheres whose lists are as long, and boxes against such spots.
@@ -301,64 +302,60 @@ constexpr const char* name_of(bool depth_test) {
     return depth_test ? "box" : "none";
 }
 
-template <Options options = Options{}>
-void add_builds(const Set<Frame>& set, int tile_size, const std::string& suffix = "") {
-    add_cases<options>(
-        set.name + suffix + text("/%zu/%dpx/", set.lights, tile_size) + name_of(options.depth_test),
-        [=]<Options one>(const std::string& name) { time_build<one>(name, set, tile_size, 1); });
+template <Options options = Options{}> void add_builds(const Set<Frame>& set, int tile_size) {
+    add_cases<options>(set.full_name() + text("/%dpx/", tile_size) + name_of(options.depth_test),
+                       [=]<Options one>(const std::string& name) { time_build<one>(name, set, tile_size); });
 }
 
-/// 2, 4, ... threads, as far as the machine has them, on the two widest instruction sets.
-void add_threads(const Set<Frame>& set, int tile_size) {
-    const int most = int(std::thread::hardware_concurrency());
-    for (int threads = 2; threads <= most; threads *= 2) {
-        const std::string name = set.full_name() + text("/%dpx/", tile_size) + name_of(false) +
-                                 text("/%d threads", threads);
+/// On the two widest instruction sets.
+template <Options options = Options{}> void add_threads(const Set<Frame>& set) {
+    for (const std::size_t threads : {2u, 4u, 8u, 16u}) {
+        const std::string name = set.full_name() + "/" + to_string(options.slicing) + "/" +
+                                 name_of(options.depth_test) + text("/%zu threads", threads);
         const auto add = [&]<Options one>() {
             cases.push_back(
-                {name + "/" + to_string(one.isa), [=] { time_build<one>(name, set, tile_size, threads); }});
+                {name + "/" + to_string(one.isa), [=] { time_threads<one>(name, set, threads); }});
         };
 #if defined(LIGHTBIN_X86)
-        visit_tier<Options{.isa = Isa::avx2}>(add);
+        visit_tier<with(options, Isa::avx2)>(add);
 #endif
-        visit_tier<Options{}>(add);
+        visit_tier<options>(add);
     }
 }
 
 /// All that is timed of one of the made sets. median 0: the near set.
-void add_set(const std::string& name, float median, double footprint, bool quick) {
+void add_set(const std::string& name, float median, bool quick) {
     const auto make = [median](std::size_t count, std::uint32_t seed) {
         return median > 0 ? field(count, median, seed) : near_eye(count, seed);
     };
-    const auto add_number = [&](std::size_t n, bool in_goals) {
+    const bool few_tiles = median == field4_median || median == field20_median;
+    for (const std::size_t n : {0u, 1u, 256u, 1000u, 4096u, 10000u, 1000000u}) {
+        if ((quick && (n == 1000 || n >= 10000)) || (n == 1000000 && median != field4_median)) continue;
         const Set<Frame> set = made_set(name, n, make);
-        for (const int tile : {8, 16, 32, 64}) {
-            const bool often = tile == 16 || tile == 32;
-            if (tile != 32 && (!in_goals || (quick && !often))) continue;
-            if (footprint * double(n) * 1024 / (tile * tile) > 6e7) continue;  // gigabytes of lists
-            add_builds(set, tile);
-            if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
-                add_builds<Options{.depth_test = true}>(set, tile);
-            if (tile == 32 && n == 10000) add_builds<Options{.ids = IdWidth::u16}>(set, tile, "-u16");
-            if (tile == 32 && n >= 10000) add_threads(set, tile);
-        }
+        add_builds(set, 32);
+        if (n < 256 || n > 10000) continue;
+        add_builds(set, 16);
+        if (median == field20_median) add_builds<Options{.depth_test = true}>(set, 32);
         Lens uhd;
         uhd.screen = {3840, 2160};
-        if (footprint <= 20 && (n == 256 || n == 10000)) add_builds(made_set(name + "-4k", n, make, uhd), 16);
-    };
-    for (const std::size_t n : {256u, 1000u, 4096u, 10000u})
-        if (!quick || n == 256 || n == 4096) add_number(n, true);
-    for (const std::size_t n : {0u, 1u, 100000u, 1000000u})
-        if (!quick || n <= 1) add_number(n, false);
+        if (n == 256 && few_tiles) add_builds(made_set(name + "-4k", n, make, uhd), 16);
+    }
 }
 
-void add_scene(const std::string& path, bool quick) {
+void add_all_threads() {
+    const Set<Frame> many = field_set("field20", field20_median, 100000);
+    add_threads(field_set("field20", field20_median, 10000));
+    add_threads(many);
+    add_threads<Options{.depth_test = true}>(many);
+    add_threads<Options{.depth_test = true, .slicing = Slicing::clusters}>(many);
+}
+
+void add_scene(const std::string& path) {
     const std::vector<BenchScene> views = glb_scenes(path);
     const std::size_t lights = views[0].lights(0).size();
-    const Set<Frame> set = {views[0].name.substr(0, views[0].name.rfind(':')), lights,
-                            [=] { return scene_frames(views, lights); }};
-    for (const int tile : {8, 16, 32, 64})
-        if (!quick || tile == 32) add_builds(set, tile);
+    add_builds(Set<Frame>{views[0].name.substr(0, views[0].name.rfind(':')), lights,
+                          [=] { return scene_frames(views, lights); }},
+               32);
 }
 
 /// Clusters and z-bins of the field sets.
@@ -379,10 +376,6 @@ void add_all_slices(bool quick) {
         if (!quick || round) add_clusters(set);
         if (round) add_slices<Slicing::z_bins>(set);
     }
-    if (quick) return;
-    add_clusters(field_set("field4", field4_median, 4096));
-    add_clusters(field_set("field200", field200_median, 4096));
-    add_slices<Slicing::z_bins>(field_set("field4", field4_median, 10000));
 }
 
 void add_masks() {
@@ -394,15 +387,9 @@ void add_masks() {
         }
 }
 
-template <bool depth_test = false> void add_sources(const Set<WorldFrame>& set) {
-    add_cases<Options{.depth_test = depth_test}>(
-        "sources/" + set.name + "/" + name_of(depth_test),
-        [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
-}
-
-void add_views(const Set<WorldFrame>& set) {
-    add_cases<Options{}>("views/" + set.name,
-                         [=]<Options one>(const std::string& name) { time_views<one>(name, set); });
+void add_sources(const Set<WorldFrame>& set) {
+    add_cases<Options{}>("sources/" + set.name,
+                         [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
 }
 
 /// How to make the frame of a seed of a set of spots or boxes.
@@ -413,8 +400,8 @@ template <class Light> struct KindSet {
 };
 
 template <Options options, class Light> void add_kind(const KindSet<Light>& kind) {
-    const std::string name =
-        kind.name + text("/%zu/", kind.lights) + name_of(options.depth_test) + "/" + to_string(options.slicing);
+    const std::string name = kind.name + text("/%zu/", kind.lights) + name_of(options.depth_test) + "/" +
+                             to_string(options.slicing);
     // The lists have the same lengths on every instruction set.
     const Set<KindFrame<Light>> set = {name, kind.lights, [=] {
                                            constexpr int tile_size = usual_tile_size(options);
@@ -430,8 +417,8 @@ template <Options options, class Light> void add_kind(const KindSet<Light>& kind
 
 void add_all_spots(bool quick) {
     for (const auto& [name, median_range] : {std::pair("spots20", spots20_median), {"spots4", spots4_median}})
-        for (const std::size_t count : {256u, 1000u, 4096u, 10000u}) {
-            if (quick && (count == 256 || count == 4096 || median_range == spots4_median)) continue;
+        for (const std::size_t count : {256u, 10000u}) {
+            if (quick && (count == 256 || median_range == spots4_median)) continue;
             const KindSet<lightbin::Spot> set = {
                 std::string("spots/") + name, count, [=, median = median_range](std::uint32_t seed) {
                     return SpotFrame{spot_field(count, median, seed), field(count, median, seed)};
@@ -478,39 +465,23 @@ void add_scale() {
                                    million.ns_per_light / few.ns_per_light, 0});
 }
 
-/// What the usual build takes, of each made set: 4,096 lights, 32-pixel tiles, no depth test.
-std::string usual_ratios() {
-    std::string all;
-    for (const Timed& r : results)
-        if (r.name.find("/4096/32px/none") != std::string::npos && r.to == "flat" &&
-            r.tier == to_string(lightbin::machine_isa()))
-            all += text("%s %s %.2f (%.2f)", all.empty() ? "" : ",",
-                        r.name.substr(0, r.name.find('/')).c_str(), r.ratio, r.spread);
-    return all;
+void write_csv() {
+    std::FILE* const csv =
+        open_report("binning.csv", "case,tier,to,ratio,spread,ns_per_light,entries_per_light");
+    for (const Timed& t : results)
+        std::fprintf(csv, "%s,%s,%s,%.4f,%.4f,%.4f,%.3f\n", t.name.c_str(), t.tier.c_str(), t.to.c_str(),
+                     t.ratio, t.spread, t.ns_per_light, t.entries_per_light);
+    std::fclose(csv);
 }
 
-void print_rows() {
+/// The rows whose names the expression matches.
+void print_rows(const std::string& filter) {
+    const std::regex wanted(filter);
     std::vector<TableRow> table = {{"case", "tier", "to", "ratio", "spread"}};
     for (const Timed& r : results)
-        table.push_back({r.name, r.tier, r.to, text("%.2f", r.ratio), text("%.2f", r.spread)});
+        if (std::regex_search(r.name, wanted))
+            table.push_back({r.name, r.tier, r.to, text("%.2f", r.ratio), text("%.2f", r.spread)});
     print_table(table);
-    std::puts("");
-}
-
-void print_verdict() {
-    const Verdicts verdicts(results);
-    verdicts.write_csv("binning_goals.csv");
-    verdicts.print();
-    std::vector<std::string> words;
-    const std::string ratios = usual_ratios(), gains = gains_of_threads(results);
-    if (!ratios.empty())
-        words.push_back(std::string("A build as a ratio to the flat loop, by ") +
-                        to_string(lightbin::machine_isa()) + ", in brackets the spread:" + ratios + ".");
-    if (!verdicts.empty()) words.push_back(verdicts.sentence());
-    if (std::ranges::find(results, "flat", &Timed::to) != results.end())
-        words.push_back(slower_tiers(results));
-    if (!gains.empty()) words.push_back(gains);
-    conclude(words, {"binning.csv", "binning_goals.csv"});
 }
 
 }  // namespace
@@ -521,26 +492,21 @@ int main(int argc, char** argv) try {
     const std::string filter = arguments.take("--filter", "");
     if (quick) seconds_a_case = 0.04;
 
-    add_set("field4", field4_median, 4, quick);
-    add_set("field20", field20_median, 20, quick);
-    add_set("field200", field200_median, 200, quick);
-    add_set("near", 0, 200, quick);
-    for (const char* const path : {LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb"})
-        add_scene(path, quick);
-    for (const std::string& path : arguments.scenes())
-        add_scene(path, quick);
+    add_set("field4", field4_median, quick);
+    add_set("field20", field20_median, quick);
+    add_set("field200", field200_median, quick);
+    add_set("near", 0, quick);
+    add_scene(LIGHTBIN_SCENES "/nova.glb");
     add_all_slices(quick);
     add_masks();
+    if (!quick) add_all_threads();
     add_builds(made_set("away", 1000000, away), 32);
     const Set<WorldFrame> field4 = {"field4", 10000, [] { return world_frames(10000, field4_median); }},
                           field20 = {"field20", 10000, [] { return world_frames(10000, field20_median); }},
                           many_lights = {"many_lights", 100000, many_lights_frames};
     add_sources(field4);
     add_sources(field20);
-    add_sources<true>(field20);
     add_sources(many_lights);
-    add_views(many_lights);
-    add_views(field20);
     add_all_spots(quick);
     add_boxes("boxes20", boxes20_median, timed_boxes());
     add_boxes("clipped20", clipped20_median, timed_clipped());
@@ -554,9 +520,9 @@ int main(int argc, char** argv) try {
         }
     }
     add_scale();
-    write_timed(results, "binning.csv");
-    if (!filter.empty()) print_rows();
-    print_verdict();
+    write_csv();
+    print_rows(filter.empty() ? "/4096/32px/" : filter);
+    conclude({}, {"binning.csv"});
     return EXIT_SUCCESS;
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "binning: %s\n", problem.what());

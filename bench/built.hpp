@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A grid of any options, and how many lights each pixel evaluates of it.
+// A grid of any options, as the reports read it.
 #pragma once
 
 #include "raster.hpp"
@@ -59,26 +59,4 @@ template <lightbin::Options options> BuildLists builder() {
     return [=](const TiledView& view, const LightSet& lights) {
         return build(*binner, view, lights, view.bounds());
     };
-}
-
-/// Light evaluations of all drawn pixels: with clusters those of the pixel's cell, with z-bins those of its tile whose
-/// ranks its bin has.
-inline double all_evaluations(const TiledView& view, const Picture& picture, const Built& built) {
-    if (built.slices == nullptr) return view.all_evaluations(built.ranges);
-    const std::size_t width = static_cast<std::size_t>(picture.size.width),
-                      t = static_cast<std::size_t>(view.view.tile_size()),
-                      tiles_x = static_cast<std::size_t>(view.view.tiles_x());
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < picture.triangle.size(); ++i) {
-        if (picture.triangle[i] == Picture::nothing) continue;
-        const std::size_t tile = i / width / t * tiles_x + i % width / t,
-                          slice = static_cast<std::size_t>(built.slices->slice_at(picture.view_depth[i]));
-        if (built.bins.empty()) {
-            sum += built.ranges[slice * view.view.tile_count() + tile].count;
-            continue;
-        }
-        const auto list = built.ids.subspan(built.ranges[tile].offset, built.ranges[tile].count);
-        sum += lightbin::lights_of_bin(list, built.bins[slice]).size();
-    }
-    return static_cast<double>(sum);
 }

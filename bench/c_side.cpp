@@ -15,6 +15,10 @@
 #include "sets.hpp"
 #include "turns.hpp"
 
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -91,24 +95,9 @@ enum class Kind { vec4s, spheres, spots, boxes };
 /// Prints the ratio for one set of options.
 template <Options options> void measure(const char* name, std::size_t count, Kind kind, double seconds) {
     using Read = typename Binner<options>::Inputs;
-    const float far_plane = 1000, near_plane = 0.1f, scale = 1 / tan_half_fov;
-    const float projection[16] = {scale / aspect,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  scale,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  -(far_plane + near_plane) / (far_plane - near_plane),
-                                  -1,
-                                  0,
-                                  0,
-                                  -2 * far_plane * near_plane / (far_plane - near_plane),
-                                  0};
-    const float camera[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const glm::mat4 lens = glm::perspectiveRH_NO(2 * std::atan(tan_half_fov), aspect, 0.1f, 1000.0f),
+                    still(1);
+    const float *const projection = &lens[0][0], *const camera = &still[0][0];
     const View cpp_view =
         *View::from_projection(matrix(projection, MatrixLayout::column_major), {1920, 1080});
     const Slices cpp_slices = *Slices::exponential(24, 5, 200);
@@ -225,10 +214,10 @@ int main(int count, char** words) {
         measure<Options{.depth_test = true}>("box", lights, Kind::spots, seconds);
         measure<Options{.depth_test = true}>("box", lights, Kind::boxes, seconds);
         measure<Options{.slicing = Slicing::clusters}>("clusters", lights, Kind::spheres, seconds);
-        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>(
-            "clusters with box", lights, Kind::spots, seconds);
-        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>(
-            "clusters with box", lights, Kind::boxes, seconds);
+        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>("clusters with box", lights,
+                                                                           Kind::spots, seconds);
+        measure<Options{.depth_test = true, .slicing = Slicing::clusters}>("clusters with box", lights,
+                                                                           Kind::boxes, seconds);
         measure<Options{.slicing = Slicing::z_bins}>("z-bins", lights, Kind::spheres, seconds);
     }
 }

@@ -3,10 +3,9 @@
 // loses by the cutoff: the illuminance at which a light is ended, so range = sqrt(intensity / cutoff).
 //
 // White surfaces (Lambert) under the scene's lights, their intensity the square of the scene's range, without shadows. The
-// reference sums every light everywhere, I cos / max(d^2, 0.01^2). Against it: the same up to the range and nothing beyond
-// it (hard); and times (1 - (d / range)^4)^2, which ends without an edge (Karis, "Real Shading in Unreal Engine 4", 2013;
-// Lagarde and de Rousiers, "Moving Frostbite to PBR", 2014) (smooth). Linear light; 1 is white, which 95 % of the drawn
-// pixels of the reference do not exceed.
+// reference sums every light everywhere, I cos / max(d^2, 0.01^2). Against it: the same times (1 - (d / range)^4)^2, which
+// ends without an edge (Karis, "Real Shading in Unreal Engine 4", 2013; Lagarde and de Rousiers, "Moving Frostbite to
+// PBR", 2014). Linear light; 1 is white, which 95 % of the drawn pixels of the reference do not exceed.
 #pragma once
 
 #include "needed.hpp"
@@ -27,7 +26,7 @@
 
 /// Of a picture to the reference, white = 1.
 struct Difference {
-    double rmse = 0, largest = 0;
+    double rmse = 0;
     double lost = 0;           ///< the mean: the picture's missing light
     double rmse_restored = 0;  ///< after adding that mean to every pixel, as an ambient term can
 };
@@ -40,7 +39,7 @@ public:
         for (const lightbin::Spot& light : spots_of(lights_)) {
             intensity_.push_back(light.radius * light.radius);
             for (std::size_t i = 0; i < truth_.size(); ++i)
-                truth_[i] += light_at<Window::none>(i, light, intensity_.back());
+                truth_[i] += endless_light_at(i, light, intensity_.back());
         }
         std::vector<float> sorted = truth_;
         std::sort(sorted.begin(), sorted.end());
@@ -64,12 +63,30 @@ public:
         return lights;
     }
 
-    Difference hard(double part) { return difference<Window::hard>(part); }
-    Difference smooth(double part) { return difference<Window::smooth>(part); }
+    /// Of the picture of lights that end there.
+    Difference difference(double part) {
+        const LightSet lights = ended(lights_, part);
+        const Spots spots = spots_of(lights);
+        const Built built = build(binner_, view_, lights, view_.bounds());
+        const int t = view_.view.tile_size(), width = picture_.size.width;
+        Difference d;
+        for (std::size_t i = 0; i < truth_.size(); ++i) {
+            const int tile =
+                surface_.pixel[i] / width / t * view_.view.tiles_x() + surface_.pixel[i] % width / t;
+            const lightbin::ListRange list = built.ranges[static_cast<std::size_t>(tile)];
+            float light = 0;
+            for (const std::uint32_t id : built.ids.subspan(list.offset, list.count))
+                light += light_at(i, spots[id], intensity_[id]);
+            const double less = static_cast<double>(truth_[i] - light) / white_;
+            d.lost += less, d.rmse += less * less;
+        }
+        d.lost /= static_cast<double>(truth_.size()), d.rmse /= static_cast<double>(truth_.size());
+        d.rmse_restored = std::sqrt(std::max(d.rmse - d.lost * d.lost, 0.0));
+        d.rmse = std::sqrt(d.rmse);
+        return d;
+    }
 
 private:
-    enum class Window { none, hard, smooth };
-
     /// What a picture's drawn pixels are lit from.
     struct Surface {
         std::vector<int> pixel;
@@ -94,41 +111,20 @@ private:
     };
 
     /// What one light gives pixel i of the surface.
-    template <Window window>
-    float light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
+    float endless_light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
         const glm::vec3 d = glm::vec3(light.x, light.y, light.z) - surface_.point[i];
         const float squared = std::max(glm::dot(d, d), 1e-4f), distance = std::sqrt(squared);
         if (light.cos_half_angle > -1) {
             const glm::vec3 axis(light.axis_x, light.axis_y, light.axis_z);
             if (-glm::dot(d, axis) < light.cos_half_angle * distance * glm::length(axis)) return 0;
         }
-        const float lit = intensity * std::max(glm::dot(d, surface_.normal[i]), 0.0f) / (squared * distance);
-        if constexpr (window == Window::none) return lit;
-        const float part = squared / (light.radius * light.radius), rest = std::max(1 - part * part, 0.0f);
-        if constexpr (window == Window::hard) return part < 1 ? lit : 0;
-        return lit * rest * rest;
+        return intensity * std::max(glm::dot(d, surface_.normal[i]), 0.0f) / (squared * distance);
     }
-
-    template <Window window> Difference difference(double part) {
-        const LightSet lights = ended(lights_, part);
-        const Spots spots = spots_of(lights);
-        const Built built = build(binner_, view_, lights, view_.bounds());
-        const int t = view_.view.tile_size(), width = picture_.size.width;
-        Difference d;
-        for (std::size_t i = 0; i < truth_.size(); ++i) {
-            const int tile =
-                surface_.pixel[i] / width / t * view_.view.tiles_x() + surface_.pixel[i] % width / t;
-            const lightbin::ListRange list = built.ranges[static_cast<std::size_t>(tile)];
-            float light = 0;
-            for (const std::uint32_t id : built.ids.subspan(list.offset, list.count))
-                light += light_at<window>(i, spots[id], intensity_[id]);
-            const double less = static_cast<double>(truth_[i] - light) / white_;
-            d.lost += less, d.rmse += less * less, d.largest = std::max(d.largest, std::fabs(less));
-        }
-        d.lost /= static_cast<double>(truth_.size()), d.rmse /= static_cast<double>(truth_.size());
-        d.rmse_restored = std::sqrt(std::max(d.rmse - d.lost * d.lost, 0.0));
-        d.rmse = std::sqrt(d.rmse);
-        return d;
+    float light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
+        const glm::vec3 d = glm::vec3(light.x, light.y, light.z) - surface_.point[i];
+        const float part = glm::dot(d, d) / (light.radius * light.radius),
+                    rest = std::max(1 - part * part, 0.0f);
+        return endless_light_at(i, light, intensity) * rest * rest;
     }
 
     Picture picture_;

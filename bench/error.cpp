@@ -9,8 +9,6 @@
 //                   for)
 //   exact           pairs whose light meets the cell between its Z bounds
 //   excess          entries / exact - 1
-//   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds. Not where
-//                   there are spots
 // The method `interval` is the papers' test, a light's depths against the tile's, by the flat loop (flat.hpp): of spots
 // the spheres of their range. As it rounds to nearest, its misses don't end the run.
 #include "arguments.hpp"
@@ -44,16 +42,13 @@ struct Row {
     int tile_size;
     Method method;
     Slicing slicing;
-    bool spots;
     std::uint64_t misses = 0, verdicts = 0, by_rationals = 0, open = 0;
     std::uint64_t entries = 0, exact = 0;
-    std::uint64_t unrounded = 0;  ///< entries in exact arithmetic
 
     static double part(std::uint64_t a, std::uint64_t b) {
         return static_cast<double>(a) / static_cast<double>(b);
     }
     double excess() const { return part(entries, exact) - 1; }
-    double margin() const { return spots ? std::nan("") : part(entries, unrounded); }
 
     /// Adds what is true of a grid's cells, whose lists are list_of(tile).
     template <class ListOf> void add(const ExactPairs& truth, ListOf list_of) {
@@ -64,17 +59,10 @@ struct Row {
             entries += list.size();
             for_each_listed(truth.tiles[tile], list, [&](const Pair& pair, bool listed) {
                 exact += (pair.facts & in_cell) != 0;
-                unrounded += keeps(pair.facts);
-                misses += !listed && (pair.facts & (clusters || method != Method::none ? in_cell : in_pyramid));
+                misses +=
+                    !listed && (pair.facts & (clusters || method != Method::none ? in_cell : in_pyramid));
             });
         }
-    }
-
-private:
-    /// Whether the method has this pair when nothing is rounded. Clusters test a light's depths, at least.
-    bool keeps(std::uint32_t facts) const {
-        if (method == Method::box) return (facts & by_box) != 0;
-        return (method == Method::none && slicing == Slicing::none) || (facts & by_interval) != 0;
     }
 };
 
@@ -101,8 +89,7 @@ std::vector<BuildLists> builders() {
 std::vector<Row> rows_of(const Case& scene, int tile_size) {
     std::vector<Row> rows;
     for (const Method method : methods)
-        rows.push_back({scene.name, scene.views.size(), tile_size, method, Slicing::none,
-                        static_cast<bool>(scene.views[0].scene.spots)});
+        rows.push_back({scene.name, scene.views.size(), tile_size, method, Slicing::none});
     const std::vector<BuildLists> builds = builders();
     for (const SeenScene& seen : scene.views) {
         const TiledView view(seen.scene, seen.picture, tile_size);
@@ -129,7 +116,7 @@ Row row_of_clusters(const std::string& name, const Lights& lights, ExactDecider&
     const lightbin::View view = made_view(tile_size);
     lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = Slicing::clusters}> binner;
     const auto grid = *binner.bin(view, lights, {.slices = slices});
-    Row row = {name, 1, tile_size, depth_test ? Method::box : Method::none, Slicing::clusters, false};
+    Row row = {name, 1, tile_size, depth_test ? Method::box : Method::none, Slicing::clusters};
     for (int slice = 0; slice < slices.count(); ++slice)
         row.add(pairs_in(decider, view, slices, slice, lights), [&](std::size_t tile) {
             const int x = int(tile) % grid.tiles_x(), y = int(tile) / grid.tiles_x();
@@ -153,54 +140,18 @@ std::vector<Row> rows_of_clusters(bool quick) {
 void write(std::FILE* csv, const std::vector<Row>& rows) {
     const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     for (const Row& row : rows)
-        std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f,%.6f\n", row.scene.c_str(),
-                     row.views, row.tile_size, name_of(row.method), to_string(row.slicing), number(row.misses),
-                     number(row.verdicts), number(row.by_rationals), number(row.open), number(row.entries),
-                     number(row.exact), row.excess(), row.margin());
+        std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f\n", row.scene.c_str(),
+                     row.views, row.tile_size, name_of(row.method), to_string(row.slicing),
+                     number(row.misses), number(row.verdicts), number(row.by_rationals), number(row.open),
+                     number(row.entries), number(row.exact), row.excess());
     std::fflush(csv);
 }
 
-/// The rows of one method, of all scenes and tile sizes or one.
-std::vector<Row> of_method(const std::vector<Row>& rows, Method method, int tile_size = 0) {
-    std::vector<Row> its = rows;
-    std::erase_if(its, [&](const Row& row) {
-        return row.method != method || (tile_size != 0 && row.tile_size != tile_size);
-    });
-    return its;
-}
-
-double median_excess(const std::vector<Row>& rows) {
-    std::vector<double> excess;
+std::vector<TableRow> table(const std::vector<Row>& rows) {
+    std::vector<TableRow> all = {{"scene", "px", "depth test", "slicing", "excess"}};
     for (const Row& row : rows)
-        excess.push_back(100 * row.excess());
-    return median(excess);
-}
-
-/// A row a method: the median of the scenes at each tile size, and the worst of all.
-std::vector<TableRow> table(const std::vector<Row>& rows, const std::vector<int>& tile_sizes) {
-    std::vector<TableRow> all = {{"depth test"}};
-    for (const int tile_size : tile_sizes)
-        all[0].push_back(text("%d px", tile_size));
-    all[0].push_back("worst");
-    for (const Method method : methods) {
-        TableRow row = {name_of(method)};
-        for (const int tile_size : tile_sizes)
-            row.push_back(text("%.1f %%", median_excess(of_method(rows, method, tile_size))));
-        const std::vector<Row> its = of_method(rows, method);
-        const Row& worst = *std::ranges::max_element(its, {}, &Row::excess);
-        row.push_back(
-            text("%.1f %%, %s at %d px", 100 * worst.excess(), worst.scene.c_str(), worst.tile_size));
-        all.push_back(row);
-    }
-    return all;
-}
-
-std::vector<TableRow> table_of_clusters(const std::vector<Row>& rows) {
-    std::vector<TableRow> all = {{text("%d clusters of 64 px", cluster_slices().count())}, {"none"}, {"box"}};
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (i % 2 == 0) all[0].push_back(rows[i].scene);
-        all[1 + i % 2].push_back(text("%.0f %%", 100 * rows[i].excess()));
-    }
+        all.push_back({row.scene, std::to_string(row.tile_size), name_of(row.method), to_string(row.slicing),
+                       text("%.1f %%", 100 * row.excess())});
     return all;
 }
 
@@ -227,61 +178,51 @@ std::vector<Case> cases(const std::vector<std::string>& paths) {
 int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     const bool quick = arguments.take("--quick");
-    std::FILE* const csv =
-        open_report("error.csv", "scene,views,tile_px,depth_test,slicing,misses,verdicts,"
-                                 "by_rationals,open,entries,exact,excess,margin");
+    std::FILE* const csv = open_report("error.csv", "scene,views,tile_px,depth_test,slicing,misses,verdicts,"
+                                                    "by_rationals,open,entries,exact,excess");
     std::vector<int> tile_sizes = {8, 16, 32, 64};
     if (quick) tile_sizes = {32, 64};
-    std::vector<Row> rows, clusters;
+    std::vector<Row> rows;
     ShapeErrors spots, boxes;
+    const auto add = [&](const std::vector<Row>& its) {
+        write(csv, its);
+        rows.insert(rows.end(), its.begin(), its.end());
+    };
     {
         Progress progress;
         for (const Case& scene : cases(arguments.scenes_or_fixtures()))
             for (const int tile_size : tile_sizes) {
                 progress(text("%s, %d px", scene.name.c_str(), tile_size));
-                const std::vector<Row> its = rows_of(scene, tile_size);
-                write(csv, its);
-                rows.insert(rows.end(), its.begin(), its.end());
+                add(rows_of(scene, tile_size));
             }
         progress("clusters");
-        clusters = rows_of_clusters(quick);
-        write(csv, clusters);
+        add(rows_of_clusters(quick));
         progress("spots by half angle");
         spots = measure_spots(quick ? 100 : 1000);
         progress("boxes");
         boxes = measure_boxes(quick ? 50 : 500);
     }
     std::fclose(csv);
-    std::puts("Entries beyond the exact set, median of the scenes\n");
-    print_table(table(rows, tile_sizes));
-    std::puts("");
-    print_table(table_of_clusters(clusters));
+    std::puts("Entries beyond the exact set\n");
+    print_table(table(rows));
     std::puts(
         "\nEntries of a spot over exact pairs of a cell and it, by half angle; in brackets those of whole "
         "spheres\n");
     print_table(spots.table);
-    std::puts("\nEntries of a box over exact pairs of a cell and it; in brackets those of the sphere around it\n");
+    std::puts(
+        "\nEntries of a box over exact pairs of a cell and it; in brackets those of the sphere around it\n");
     print_table(boxes.table);
 
     std::uint64_t misses = spots.misses + boxes.misses, open = spots.open, verdicts = 0;
-    double margin = 1;
-    for (const std::vector<Row>& some : {rows, clusters})
-        for (const Row& row : some) {
-            if (row.method == Method::interval) continue;
-            misses += row.misses;
-            if (row.slicing == Slicing::none && !row.spots) margin = std::max(margin, row.margin());
-        }
-    for (const Row& row : of_method(rows, Method::none))
-        verdicts += row.verdicts, open += row.open;
-    const auto half = [&](Method method) { return median_excess(of_method(rows, method)); };
+    for (const Row& row : rows) {
+        if (row.method != Method::interval) misses += row.misses;
+        if (row.method == Method::none && row.slicing == Slicing::none)
+            verdicts += row.verdicts, open += row.open;
+    }
     conclude({text("%llu entries missed, clusters counted in; %.2g pairs of a tile and a light were decided, "
                    "%llu left open.",
                    static_cast<unsigned long long>(misses), static_cast<double>(verdicts),
                    static_cast<unsigned long long>(open)),
-              text("Listed beyond the exact set, in the median: without Z bounds %.0f %%, interval %.0f %%, "
-                   "box %.1f %%.",
-                   half(Method::none), half(Method::interval), half(Method::box)),
-              text("Rounding outward adds %.3f %% at most to rectangles' entries.", 100 * (margin - 1)),
               text("Whole spheres are listed %.1f to %.0f times as often as the spots in them, in the median "
                    "%.1f.",
                    percentile(spots.saved, 0), percentile(spots.saved, 1), median(spots.saved))},

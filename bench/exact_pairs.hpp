@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere or the spot
-// meets the tile's cell, and of spheres whether each depth test would keep it if its numbers were never rounded.
+// meets the tile's cell.
 //
 // Decided in double precision where that proves the answer, else in rationals; of a spot, by a certificate.
 #pragma once
@@ -28,10 +28,8 @@
 
 /// What may be true of a tile and a light.
 enum Fact : std::uint32_t {
-    in_pyramid = 1,   ///< the light meets the tile's cell without Z bounds
-    in_cell = 2,      ///< ... between the tile's minimum and maximum depth: the exact set
-    by_interval = 4,  ///< the sphere's depths meet the tile's; this and the next of spheres only
-    by_box = 8,       ///< it meets the view-space box around the cell
+    in_pyramid = 1,  ///< the light meets the tile's cell without Z bounds
+    in_cell = 2,     ///< ... between the tile's minimum and maximum depth: the exact set
 };
 
 /// A light in whose rectangle, by exact arithmetic, a tile lies; a spot that meets the tile.
@@ -151,7 +149,8 @@ private:
         Ball ball;
         oracle::ExactSpot exact;
         oracle::FlatSpot flat;
-        std::vector<SpotSubject> halves;  ///< of a half angle above 90 degrees: half balls that fill it but for slivers
+        std::vector<SpotSubject>
+            halves;  ///< of a half angle above 90 degrees: half balls that fill it but for slivers
     };
 
     Range within_view(float min, float max) const {
@@ -221,15 +220,9 @@ private:
         const float min = bounds.min[tile], max = bounds.max[tile];
         const bool pyramid = meets(x, y, truth_.range, ball);
         std::uint32_t facts = pyramid ? +in_pyramid : 0;
-        // Exact in double: two floats of 24 bits that are not 2^29 times apart.
-        if (!(min <= max) || ball.depth + ball.radius < static_cast<double>(min) ||
-            ball.depth - ball.radius > static_cast<double>(max))
-            return facts;
-        facts |= by_interval;
         const Range whole = within_view(min, max);
-        if (empty(whole) || !meets_box(x, y, whole, ball)) return facts;
-        facts |= by_box;
-        return pyramid && meets(x, y, whole, ball) ? facts | in_cell : facts;
+        const bool cell = pyramid && min <= max && !empty(whole) && meets(x, y, whole, ball);
+        return facts | (cell ? +in_cell : 0);
     }
 
     /// Whether the ball meets the cell of tile (x, y) in this range.
@@ -241,8 +234,8 @@ private:
     /// certificate.
     bool meets(int x, int y, const Range& range, const SpotSubject& spot) {
         if (!spot.halves.empty())
-            return std::ranges::any_of(
-                spot.halves, [&](const SpotSubject& half) { return meets(x, y, range, half); });
+            return std::ranges::any_of(spot.halves,
+                                       [&](const SpotSubject& half) { return meets(x, y, range, half); });
         const Slopes &column = column_slopes_[static_cast<std::size_t>(x)],
                      &row = row_slopes_[static_cast<std::size_t>(y)];
         const bool from_near = range.min == truth_.range.min, to_far = range.max == truth_.range.max;
@@ -264,29 +257,6 @@ private:
         if (proven) return *proven;
         open_ += !verdict;
         return verdict.value_or(false);
-    }
-    /// Whether it meets the view-space box around the cell.
-    bool meets_box(int x, int y, const Range& range, const Ball& ball) {
-        return truth_.settle(truth_.filter.meets_box(x, y, range, ball),
-                             [&] { return exactly_meets_box(x, y, range, ball); });
-    }
-
-    bool exactly_meets_box(int x, int y, const Range& range, const Ball& ball) const {
-        const oracle::Depths depths = exact(range);
-        const oracle::CameraBall centre = Exactly{ball}();
-        Rational distance = 0;
-        const auto add = [&](const Rational& low, const Rational& high, const Rational& c) {
-            if (c < low) distance += oracle::square(low - c);
-            if (c > high) distance += oracle::square(c - high);
-        };
-        const auto add_slab = [&](const oracle::Slab& slab, const Rational& c) {
-            add(slab.low.at(slab.low.slope < 0 ? *depths.max : *depths.min),
-                slab.high.at(slab.high.slope < 0 ? *depths.min : *depths.max), c);
-        };
-        add_slab(truth_.columns(x, x + 1), centre.x);
-        add_slab(truth_.rows(y, y + 1), centre.y);
-        add(*depths.min, *depths.max, centre.depth);
-        return distance <= oracle::square(centre.radius);
     }
 
     oracle::Depths exact(const Range& range) const {

@@ -1,28 +1,14 @@
 #!/bin/sh
-# sh bench/include.sh [--rounds N]: what it costs to include the library: processor seconds to compile a file that includes
-# one header and uses nothing of it, the best of N rounds (9) over all headers, and beside them what that is beyond
+# sh bench/include.sh: what it costs to include the library: processor seconds to compile a file that includes
+# one header and uses nothing of it, the best of nine rounds over all headers, and beside them what that is beyond
 # <immintrin.h>, which the kernels can't do without. With g++ -O0, or $CXX and $CXXFLAGS. A minute at most.
 set -eu
 me=bench/include.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
+takes "" "" "$@"
 rounds=9
-while [ $# -gt 0 ]; do
-    case $1 in
-    -h | --help) help ;;
-    --rounds)
-        [ $# -gt 1 ] || fail "--rounds needs a number"
-        rounds=$2
-        shift
-        ;;
-    *) fail "cannot do '$1': it takes --rounds or --help" ;;
-    esac
-    shift
-done
-case $rounds in
-'' | *[!0-9]* | 0) fail "--rounds takes a number from 1 on, not '$rounds'" ;;
-esac
 [ -n "${CXX-}" ] || install_packages g++ bash
 compiler=${CXX:-g++}
 flags=${CXXFLAGS:--O0}

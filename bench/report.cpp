@@ -12,9 +12,9 @@
 //   evals, needed   light evaluations a drawn pixel, and of those lights that reach its point; ratio: of the two
 //   front           1 on the Pareto front: no other is both faster and nearer to what is needed
 //   misses          lights that reach a pixel and are not in its list. For ours they end the run
-// and a row for each place to end lights, `ends hard` and `ends smooth` (cutoff.hpp), of 16-pixel tiles with `box`:
+// and a row for each place to end lights, `ends smooth` (cutoff.hpp), of 16-pixel tiles with `box`:
 //   cutoff          in parts of white
-//   rmse, rmse_restored, largest   of the picture to that of endless lights, white = 1
+//   rmse, rmse_restored   of the picture to that of endless lights, white = 1
 #include "arguments.hpp"
 #include "console.hpp"
 #include "cutoff.hpp"
@@ -29,6 +29,7 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -39,8 +40,6 @@ namespace {
 
 bool quick = false;
 double evaluation_ns = lightbin::Costs{}.evaluation_ns;
-std::string evaluation_words = "assumed, about a GPU's";  ///< where that number is from
-double software_ns = 0;  ///< of this machine's OpenGL, where it draws without a GPU
 
 constexpr double as_good = 1.03;  ///< what is so near to the best is as good
 
@@ -71,7 +70,6 @@ double total_without_bounds(const Result& result) {
 }
 
 struct Ending {
-    const char* window;
     double part, total, evaluations;
     Difference difference;
 };
@@ -80,6 +78,7 @@ struct SceneReport {
     std::string name;
     std::size_t lights, views;
     double needed;
+    std::string advice;
     std::vector<Result> results;
     std::vector<Ending> endings;
 
@@ -184,6 +183,57 @@ void mark_front(std::vector<Result>& results) {
         });
 }
 
+/// "+12 %", of a total to a lesser one.
+std::string more(const Result& a, const Result& b) {
+    return text("%+.0f %%", 100 * (a.total / b.total - 1));
+}
+
+/// The depth of the middle pixel of each 8 x 8.
+std::vector<float> sampled(const Picture& picture) {
+    std::vector<float> samples;
+    const auto width = static_cast<std::size_t>(picture.size.width);
+    for (std::size_t y = 4; y < static_cast<std::size_t>(picture.size.height); y += 8)
+        for (std::size_t x = 4; x < width; x += 8)
+            samples.push_back(picture.triangle[y * width + x] == Picture::nothing
+                                  ? std::numeric_limits<float>::infinity()
+                                  : picture.view_depth[y * width + x]);
+    return samples;
+}
+
+/// What advise() and advise_slices() choose together of the plans that are measured here, too, told of the first view its
+/// Z bounds and the depth of one pixel in 64; and what the choice takes over the best method.
+std::string advice_of(const SceneReport& report, const PreparedView& view) {
+    const Result &box = report.best([](const Way&way) { return way.method == std::string_view("box"); }),
+                 &best = report.best(ours);
+    const lightbin::Costs costs = {.evaluation_ns = evaluation_ns,
+                                   .z_bounds_ns = 1e6 * box.bounds,
+                                   .upload_byte_ns = 1e3 * box.upload / box.kilobytes};
+    const TiledView &finest = view.tiled.of(8), &finest_clusters = view.tiled.of(16);
+    const std::vector<float> samples = sampled(view.seen.picture);
+    const lightbin::Extent size = view.seen.picture.size;
+    std::vector<lightbin::Plan> plans;
+    std::visit(
+        [&](const auto& lights) {
+            const lightbin::Advice tiles = *lightbin::advise(finest.view, lights, costs, finest.bounds()),
+                                   slices = *lightbin::advise_slices(
+                                       finest_clusters.view, lights,
+                                       {.clusters = finest.clusters, .z_bins = finest.z_bins},
+                                       {.depths = samples, .size = {size.width / 8, size.height / 8}}, costs);
+            for (const lightbin::Advice* const advice : {&tiles, &slices})
+                plans.insert(plans.end(), advice->plans().begin(), advice->plans().end());
+        },
+        view.seen.scene.light_set(0));
+    const auto result_of = [&](const lightbin::Plan& plan) {
+        return std::ranges::find_if(report.results, [&](const Result& r) {
+            return ours(r.way) && plan.tiled && r.way.tile_size == plan.tile_size &&
+                   r.way.depth_test == plan.depth_test && r.way.slicing == plan.slicing;
+        });
+    };
+    std::erase_if(plans, [&](const auto& plan) { return result_of(plan) == report.results.end(); });
+    const lightbin::Plan plan = lightbin::Advice(plans).best();
+    return "; advise(): " + to_string(plan) + ", " + more(*result_of(plan), best);
+}
+
 std::vector<Ending> study_endings(const PreparedView& view) {
     std::vector<Ending> endings;
     CutoffStudy study(view.seen.scene);
@@ -201,14 +251,13 @@ std::vector<Ending> study_endings(const PreparedView& view) {
         const double evaluations = tiled.evaluations(built.ranges),
                      shade = tiled.all_evaluations(built.ranges) * evaluation_ns * 1e-6,
                      total = 1e3 * (tiled.reduce_seconds + median(builds)) + upload_ms(built) + shade;
-        endings.push_back({"hard", 1.0 / k, total, evaluations, study.hard(1.0 / k)});
-        endings.push_back({"smooth", 1.0 / k, total, evaluations, study.smooth(1.0 / k)});
+        endings.push_back({1.0 / k, total, evaluations, study.difference(1.0 / k)});
     }
     return endings;
 }
 
 SceneReport measure(Case scene) {
-    SceneReport report = {scene.name, scene.views[0].lights(0).size(), scene.views.size(), 0, {}, {}};
+    SceneReport report = {scene.name, scene.views[0].lights(0).size(), scene.views.size(), 0, {}, {}, {}};
     const std::vector<Way> ways = Ways::all(static_cast<bool>(scene.views[0].spots));
     std::vector<PreparedView> views;
     for (BenchScene& view : scene.views)
@@ -237,6 +286,7 @@ SceneReport measure(Case scene) {
                                   evaluations, m.evaluations / needed, m.bytes / 1e3, m.misses});
     }
     mark_front(report.results);
+    report.advice = advice_of(report, views[0]);
     report.endings = study_endings(views[0]);
     return report;
 }
@@ -245,29 +295,22 @@ void write_csv(const std::vector<SceneReport>& reports) {
     std::FILE* const csv = open_report(
         "report.csv",
         "scene,lights,views,method,tile_px,bounds_ms,build_ms,upload_ms,shade_ms,total_ms,total_p10_ms,"
-        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored,"
-        "largest");
+        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored");
     for (const SceneReport& report : reports) {
         for (const Result& r : report.results)
             std::fprintf(csv,
                          "%s,%zu,%zu,%s,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.4f,%.1f,%d,%"
-                         "llu,%g,,,,\n",
+                         "llu,%g,,,\n",
                          report.name.c_str(), report.lights, report.views, r.way.method, r.way.tile_size,
                          r.bounds, r.build, r.upload, r.shade, r.total, r.low, r.high, r.evaluations,
                          report.needed, r.ratio, r.kilobytes, r.front,
                          static_cast<unsigned long long>(r.misses), evaluation_ns);
         for (const Ending& e : report.endings)
-            std::fprintf(csv, "%s,%zu,%zu,ends %s,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f,%.5f\n",
-                         report.name.c_str(), report.lights, report.views, e.window, e.total, e.evaluations,
-                         evaluation_ns, e.part, e.difference.rmse, e.difference.rmse_restored,
-                         e.difference.largest);
+            std::fprintf(csv, "%s,%zu,%zu,ends smooth,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f\n",
+                         report.name.c_str(), report.lights, report.views, e.total, e.evaluations,
+                         evaluation_ns, e.part, e.difference.rmse, e.difference.rmse_restored);
     }
     std::fclose(csv);
-}
-
-/// "+12 %", of a total to a lesser one.
-std::string more(const Result& a, const Result& b) {
-    return text("%+.0f %%", 100 * (a.total / b.total - 1));
 }
 
 /// The answer for one scene.
@@ -290,14 +333,13 @@ std::string sentence(const SceneReport& report) {
     if (std::ranges::any_of(report.results, [&](const Result& r) { return whole(r.way); }))
         s += "; cones instead of whole spheres save " +
              text("%.0f %%", 100 * (1 - best.total / report.best(whole).total));
-    return s;
+    return s + report.advice;
 }
 
 /// Where lights can end for 1 % of RMSE, a smooth window and the lost mean given back.
 std::string ending_sentence(const SceneReport& report) {
     const Ending* last = nullptr;
     for (const Ending& ending : report.endings) {
-        if (std::string_view(ending.window) != "smooth") continue;
         last = &ending;
         if (ending.difference.rmse_restored <= 0.01) break;
     }
@@ -381,9 +423,9 @@ std::vector<TableRow> table(const std::vector<SceneReport>& reports) {
 void print(const std::vector<SceneReport>& reports) {
     std::printf("\nframe: Z bounds, build, upload and light evaluations, over the best method's of each "
                 "scene; median and\n"
-                "worst. An evaluation takes %g ns (%s). evaluations: over the\n"
-                "lights that reach the pixel. As good: within %.0f %%.\n",
-                evaluation_ns, evaluation_words.c_str(), 100 * (as_good - 1));
+                "worst. An evaluation takes %g ns. evaluations: over the lights that reach the pixel. As "
+                "good: within %.0f %%.\n",
+                evaluation_ns, 100 * (as_good - 1));
     std::vector<TableRow> rows = table(reports);
     rows.insert(rows.begin(), row_head);
     print_table(rows);
@@ -402,9 +444,8 @@ void write_page(const std::vector<SceneReport>& reports) {
         line(words);
     };
     line(text("What a frame of %dx%d pixels pays for its lists and lights, and how many light evaluations it "
-              "makes over those needed: %g ns an evaluation (%s), one core builds (`%s`).",
-              screen.width, screen.height, evaluation_ns, evaluation_words.c_str(),
-              to_string(lightbin::machine_isa())));
+              "makes over those needed: %g ns an evaluation, one core builds (`%s`).",
+              screen.width, screen.height, evaluation_ns, to_string(lightbin::machine_isa())));
     const std::vector<TableRow> rows = table(reports);
     for (const Question& question : questions)
         for (const TableRow& cells : rows)
@@ -421,11 +462,10 @@ void write_page(const std::vector<SceneReport>& reports) {
     line("\n## What an evaluation costs\nThe best method by what a light evaluation takes: about .005 to .05 "
          "ns "
          "on a GPU, 1 ns on a core.\n");
-    std::vector<double> costs = {0.005, 0.02, 0.05, 0.2, 1};
-    if (software_ns > 0) costs.push_back(software_ns);
+    constexpr double costs[] = {0.005, 0.02, 0.05, 0.2, 1};
     std::vector<std::string> cells = {"scene"};
     for (const double ns : costs)
-        cells.push_back(text("%.3g ns", ns) + (ns == software_ns ? " (OpenGL here)" : ""));
+        cells.push_back(text("%.3g ns", ns));
     row(cells);
     for (const SceneReport& report : reports) {
         cells = {report.name};
@@ -462,30 +502,13 @@ std::vector<Case> made_scenes() {
     return all;
 }
 
-/// Takes what frames/evaluation printed: nanoseconds and a renderer, or nothing. A software renderer's are no GPU's.
-void take_measured(const std::string& measured) {
-    char* name = nullptr;
-    const double ns = std::strtod(measured.c_str(), &name);
-    if (!(ns > 0)) return;
-    const std::string_view renderer = name;
-    const auto is = [&](const char* word) { return renderer.find(word) != std::string_view::npos; };
-    if (is("llvmpipe") || is("softpipe") || is("SwiftShader")) {
-        software_ns = ns;
-        evaluation_words += text("; OpenGL here, without one: %.3g", ns);
-    } else {
-        evaluation_ns = ns;
-        evaluation_words = std::string("measured:").append(renderer);
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     quick = arguments.take("--quick");
-    take_measured(arguments.take("--measured", ""));
     const std::string given = arguments.take("--evaluation-ns", "");
-    if (!given.empty()) evaluation_ns = std::strtod(given.c_str(), nullptr), evaluation_words = "as given";
+    if (!given.empty()) evaluation_ns = std::strtod(given.c_str(), nullptr);
     if (!(evaluation_ns > 0)) throw std::runtime_error("--evaluation-ns must be a number greater than 0");
 
     std::vector<Case> all;

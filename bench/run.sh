@@ -2,54 +2,33 @@
 # Measures: `sh bench/run.sh [PROGRAM] [options]` on Debian 12, as root or with sudo. Installs the packages that
 # are missing, builds in build/bench and runs there. Leave the machine alone while it runs.
 #
-#   binning [--quick] [SCENE.glb ...] [--filter=REGEX]
-#       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
-#       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots), of boxes as a ratio to spheres and to spots (^boxes): all, or those whose
-#       names the expression matches, which it prints. Says how many goals are met and what is missed by most, where a
-#       wider instruction set is slower than a narrower one, and what threads gain. About 7 minutes, --quick half a
-#       minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv: a row for each case, instruction
-#       set and thing that it is a ratio to. The sets fieldN have a mean footprint of N tiles of 32 pixels; box is
-#       held against the baseline without Z; a ratio to one thread says how many times as fast several
-#       are; for no light ns_per_light is a whole build's.
+#   binning [--quick] [--filter=REGEX]
+#       (the default) Times of whole builds, over the flat loop or what else is named: all, or the cases whose names the
+#       expression matches, which it prints: ^sources, ^slices, ^spots, ^boxes, threads. Writes build/bench/binning.csv, a
+#       row for each case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N
+#       tiles of 32 pixels; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
-#       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many
-#       light evaluations it makes over those needed, on made scenes and those of bench/scenes, or on the named ones; and
-#       what the picture loses by where lights end, and where they may for an RMSE of 1 %. A table with verdicts and a
-#       sentence a scene. Four minutes, --quick one. Writes build/bench/report.html and report.csv.
+#       of so many nanoseconds, .02 if none are given) and how many light evaluations it makes over those needed, on made
+#       scenes and those of bench/scenes, or on the named ones; what advise() chooses; and what the picture loses by where
+#       lights end. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
-#       What each footprint and depth test and clusters list beyond the exact set, and what they miss, each pair of a cell and
-#       a light decided in exact arithmetic; of single spots by half angle, listed as the spheres of their ranges, as their
-#       least spheres and as spots; and of single boxes, listed as spheres and as boxes. Writes build/bench/error.csv,
-#       spots_error.csv and boxes_error.csv.
-#   advise [--quick] [--avx2 | --simd128 | --scalar] [SCENE.glb ...]
-#       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
-#       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
-#       named one. Writes build/bench/advise.csv.
+#       What each depth test and clusters list beyond the exact set, and what they miss; of single spots by half angle and
+#       of single boxes by shape, too. Writes build/bench/error.csv, spots_error.csv and boxes_error.csv.
 #   c_side [SECONDS]
-#       Whole builds through lightbin.h over the same in C++, in turns, on lights in structs of the caller's. Each line is
-#       the median of five programs that differ in the order of their functions, with the least and the greatest; each
-#       program takes half a second, or so many, for it. Three minutes.
+#       Whole builds through lightbin.h over the same in C++, in turns. Each line is the median of five programs that
+#       differ in the order of their functions; each takes half a second, or so many, for it. Three minutes.
 #   stability [--quick]
-#       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
-#       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
-#       an error. A line a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
-#       Some minutes, --quick half a one.
-#   frames [--quick] [--counts] [--pictures] [--into=FOLDER] [SCENE.glb ...]
+#       How far off the screen bounds of lights are under stiff and extreme conditions: the library's and the textbooks', in
+#       float and in double. A miss by the library is an error. Writes build/bench/stability.html and stability.csv.
+#   frames [--quick] [--counts] [--into=FOLDER] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of
-#       bench/scenes): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten
-#       minutes at most with a software renderer, --quick two; --counts leaves the times out, for a machine that is at work. A
-#       scene of ten views or more is taken for a camera's path. Writes to build/bench, or to FOLDER, which it makes: its
-#       tables, frames.txt; all rows, frames.csv; of the paths frames_paths.csv and the plots frames_times and
-#       frames_evaluations, .svg and .png. --pictures: a PNG a view in build/bench, too. What the repository has of a
-#       machine is made by `sh bench/run.sh frames --into=bench/results/llvmpipe-zen4`, or what its processor is.
-#   gpu [--quick] [--gl | --vulkan]
-#       Builds on the GPU by shader_cull beside builds on the CPU with their upload, of 1,000 to 100,000 lights and of
-#       Bevy's many_lights: milliseconds by the GPU's clock, bytes, tests of a light against a cell, and how many entries the
-#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. Up to 10,000 lights in plain
-#       tiles also beside a build that tests every light in every tile. In OpenGL and in Vulkan,
-#       or in the one that is named. Some minutes where they draw on the CPU, --quick one. Writes build/bench/gpu.csv.
+#       bench/scenes). --counts leaves the times out, for a machine that is at work. A scene of ten views or more is taken
+#       for a camera's path. Writes to build/bench, or to FOLDER, which it makes: frames.txt, frames.csv, frames_paths.csv
+#       and the plots frames_times and frames_evaluations, .svg and .png.
+#   gpu [--quick]
+#       Builds on the GPU by shader_cull beside builds on the CPU with their upload, in OpenGL. GPU's lists that lack an
+#       entry of the CPU's, or are out of order, are an error. Writes build/bench/gpu.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -58,38 +37,33 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | advise | frames | stability | gpu | c_side)
+binning | report | error | frames | stability | gpu | c_side)
     program=$1
     shift
     ;;
 esac
 options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
-binning) options="--quick --filter=..." ;;
-advise) options="--quick --avx2 --simd128 --scalar" ;;
-frames) options="--quick --counts --pictures --into=..." ;;
+binning) options="--quick --filter=..." words="" pattern="" ;;
+frames) options="--quick --counts --into=..." ;;
 c_side) options="" words="a number" pattern='[0-9.]+' ;;
-gpu) options="--quick --gl --vulkan" words="" pattern="" ;;
+gpu) words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
 forms=$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')
 takes "$program, $options${options:+${words:+, }}$words" "$forms${forms:+${pattern:+|}}$pattern" "$@"
 
-packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
-targets=$program
-[ $program != report ] || targets="report evaluation"
+packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtinygltf-dev"
 [ $program != c_side ] || packages="$packages lld"
 case $program in
-frames | gpu | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
+frames | gpu) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
 esac
-[ $program != gpu ] || packages="$packages libvulkan-dev mesa-vulkan-drivers glslang-dev spirv-tools"
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
 
 make_build_folder
 echo "$me: building in build/bench"
-# shellcheck disable=SC2086  # one word a target
-{ cmake --preset bench && cmake --build build/bench --target $targets; } >build/bench.log 2>&1 ||
+{ cmake --preset bench && cmake --build build/bench --target $program; } >build/bench.log 2>&1 ||
     { cat build/bench.log; fail "the build failed"; }
 echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(c++ --version | head -n 1)"
 
@@ -108,7 +82,6 @@ done
 cd build/bench
 case $program in
 report | stability)
-    [ $program != report ] || set -- "$@" --measured "$(./bench/frames/evaluation 2>/dev/null || true)"
     "./bench/$program" "$@"
     sh ../../bench/page.sh $program
     echo "$me: wrote build/bench/$program.html and $program.csv"

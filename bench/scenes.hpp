@@ -165,12 +165,6 @@ inline BenchScene field_with_depth() {
     });
 }
 
-inline BenchScene few_lights() {
-    return street_canyon().scene("few", 8, [](Dice& dice, std::size_t) {
-        return glm::vec4(dice.between({-8, 2, -80}, {8, 5, 0}), dice.about(8, 1.5f));
-    });
-}
-
 /// Straight down on low boxes, all lights close to the ground: depth tells lights apart the least here.
 inline BenchScene top_down() {
     SceneBuilder world({0, 60, 0}, {0, 0, 0}, {0, 0, -1});
@@ -221,23 +215,6 @@ inline BenchScene foliage() {
     return std::move(world).scene("foliage", 1500, [](Dice& lights, std::size_t i) {
         if (i % 2 == 0) return glm::vec4(lights.between({-25, 0.5f, -28}, {25, 14, -3}), lights.about(2, 2));
         return glm::vec4(lights.between({-120, 0.5f, -110}, {120, 30, -28}), lights.about(7, 2));
-    });
-}
-
-inline BenchScene giant_light() {
-    return plain_with_boxes().scene("giant", 1, [](Dice& dice, std::size_t) {
-        return glm::vec4(dice.between({-20, 50, -100}, {20, 80, 0}), 800.0f);
-    });
-}
-
-/// As many lights as in the field, all behind the eye or surely beside the view.
-inline BenchScene off_screen() {
-    return plain_with_boxes().scene("off-screen", 4000, [](Dice& dice, std::size_t i) {
-        const float radius = dice.about(6, 2);
-        if (i % 2 == 0) return glm::vec4(dice.between({-160, 0.5f, 90}, {160, 6, 300}), radius);
-        const float z = dice.between(-200, 30);
-        const float beside = 2 * (40 - z) + 60;
-        return glm::vec4(i % 4 == 1 ? beside : -beside, dice.between(0.5f, 6), z, radius);
     });
 }
 
@@ -346,14 +323,4 @@ inline BenchScene car_park() {
 
 inline std::vector<BenchScene> spot_scenes() {
     return {scenes::street_lamps(), scenes::stage(), scenes::car_park()};
-}
-
-/// One scene of each kind.
-inline std::vector<BenchScene> scene_kinds() {
-    std::vector<BenchScene> kinds = {scenes::few_lights(),  scenes::field_with_depth(), scenes::top_down(),
-                                     scenes::street(),      scenes::corridor(),         scenes::foliage(),
-                                     scenes::giant_light(), scenes::off_screen()};
-    for (BenchScene& scene : spot_scenes())
-        kinds.push_back(std::move(scene));
-    return kinds;
 }

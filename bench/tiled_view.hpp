@@ -98,11 +98,11 @@ private:
     }
 };
 
-/// A scene's views by tile size; the last is one tile for the whole screen.
+/// A scene's views by tile size.
 class Views {
 public:
     Views(const BenchScene& scene, const Picture& picture) {
-        for (const int tile_size : {8, 16, 32, 64, screen.width})
+        for (const int tile_size : {8, 16, 32, 64})
             views_.emplace_back(scene, picture, tile_size);
     }
 

@@ -4,7 +4,6 @@
 
 #include "built.hpp"
 #include "flat.hpp"
-#include "planes.hpp"
 #include "tiled_view.hpp"
 
 #include <lightbin/lightbin.hpp>
@@ -22,8 +21,10 @@ enum class Form { as_they_are, least_spheres, whole_spheres };
 struct Way {
     const char* method;
     int tile_size;
+    bool depth_test;
+    lightbin::Slicing slicing;
     bool needs_bounds;  ///< Z bounds are made for it first
-    bool ours;          ///< or as engines do it
+    bool ours;          ///< or the flat loop, as engines do it
     bool variant;       ///< of another, to tell what a part of it pays; in no table
     Form form;
     BuildLists build;
@@ -39,7 +40,8 @@ public:
     /// Of scenes with spots also those of spheres around them.
     static std::vector<Way> all(bool with_spots) {
         using lightbin::Options, lightbin::Slicing;
-        constexpr Options box = {.depth_test = true}, boxes = {.depth_test = true, .slicing = Slicing::clusters};
+        constexpr Options box = {.depth_test = true},
+                          boxes = {.depth_test = true, .slicing = Slicing::clusters};
         Ways ways;
         ways.add<Options{}>("plain");
         ways.add<box>("box");
@@ -49,13 +51,9 @@ public:
         if (with_spots) {
             ways.add<box>("box of least spheres", true, Form::least_spheres);
             ways.add<box>("box of whole spheres", true, Form::whole_spheres);
-            ways.add<boxes>("clusters+box of least spheres", true, Form::least_spheres);
-            ways.add<boxes>("clusters+box of whole spheres", true, Form::whole_spheres);
         }
-        ways.add_engines<Flat<float>, false>("flat loop");
-        ways.add_engines<Flat<float>, true>("flat loop+Z");
-        ways.add_engines<Planes, false>("planes a tile");
-        ways.add_engines<Planes, true>("planes a tile+Z");
+        ways.add_flat_loop<false>("flat loop");
+        ways.add_flat_loop<true>("flat loop+Z");
         return std::move(ways.all_);
     }
 
@@ -65,19 +63,19 @@ private:
         constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
         for (const int tile_size : {8, 16, 32, 64})
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
-                all_.push_back({method, tile_size, options.depth_test && !clusters, true, variant, form,
-                                builder<options>()});
+                all_.push_back({method, tile_size, options.depth_test, options.slicing,
+                                options.depth_test && !clusters, true, variant, form, builder<options>()});
     }
 
-    template <class Loop, bool with_bounds> void add_engines(const char* method) {
-        const auto loop = std::make_shared<Loop>();
+    template <bool with_bounds> void add_flat_loop(const char* method) {
+        const auto loop = std::make_shared<Flat<float>>();
         const auto ranges = std::make_shared<std::vector<lightbin::ListRange>>();
         for (const int tile_size : {8, 16, 32, 64})
             all_.push_back(
-                {method, tile_size, with_bounds, false, false, Form::whole_spheres,
-                 [=](const TiledView& view, const LightSet& lights) -> Built {
-                     loop->template build<with_bounds>(view.flat, std::get<Lights>(lights), view.min.data(),
-                                                       view.max.data());
+                {method, tile_size, with_bounds, lightbin::Slicing::none, with_bounds, false, false,
+                 Form::whole_spheres, [=](const TiledView& view, const LightSet& lights) -> Built {
+                     loop->build<with_bounds>(view.flat, std::get<Lights>(lights), view.min.data(),
+                                              view.max.data());
                      ranges->resize(loop->offsets.size() - 1);  // as shaders read them
                      for (std::size_t i = 0; i < ranges->size(); ++i)
                          (*ranges)[i] = {loop->offsets[i], loop->offsets[i + 1] - loop->offsets[i]};

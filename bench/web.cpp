@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
-// web [--quick] [threads]: a whole build, lights in to lists out, as a ratio to the flat loop that is timed in turns with
-// it, on rotating light sets. A line a case: set, instruction set, ratio, its spread. Or what two threads gain, coming from
-// other work or from sleep, and what they gain at mere arithmetic. bench/web.sh builds it for WebAssembly and for this
-// machine, and sets the two beside each other.
+// web [--quick]: a whole build, lights in to lists out, as a ratio to the flat loop that is timed in turns with it, on
+// rotating light sets. A line a case: set, instruction set, ratio, its spread. bench/web.sh builds it for WebAssembly and
+// for this machine, and sets the two beside each other.
 #include "builds.hpp"
-#include "gains.hpp"
-#include "pool.hpp"
 #include "spots_sets.hpp"
 #include "tiers.hpp"
 #include "turns.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -74,29 +70,10 @@ void time_tiers(const char* set, const std::vector<AnyFrame>& frames) {
     visit_tier<Options{.depth_test = depth_test, .isa = Isa::simd128}>(time);
 }
 
-void time_threads() {
-    const std::vector<Frame> frames = field_frames(100000, field20_median);
-    const lightbin::View view = Lens().view(tile_size);
-    Pool pool(2);
-    Build<Options{.isa = Isa::simd128}> build(tile_size);
-    const Gains gains = measure_gains({2, pool}, 4 * seconds_a_case,
-                                      [&](const lightbin::Parallel& threads, std::size_t turn) {
-                                          return build(view, frames[turn % frames.size()].lights, threads);
-                                      });
-    std::printf("%.2f %.2f %.2f\n", gains.awake, gains.asleep, gains.sums);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::vector<std::string_view> words(argv + 1, argv + argc);
-    // emscripten's standard library has no algorithms of ranges yet.
-    const auto has = [&](const char* word) { return std::count(words.begin(), words.end(), word) > 0; };
-    if (has("--quick")) seconds_a_case = 0.2;
-    if (has("threads")) {
-        time_threads();
-        return 0;
-    }
+    if (argc > 1 && std::string_view(argv[1]) == "--quick") seconds_a_case = 0.2;
     time_tiers("field4/4096", field_frames(4096, field4_median));
     const std::vector<Frame> field20 = field_frames(4096, field20_median);
     time_tiers("field20/4096", field20);

@@ -1,8 +1,8 @@
 #!/bin/sh
 # sh bench/web.sh [--quick]: how fast the library is as WebAssembly. bench/web.cpp under node, with simd128 and without,
 # beside the same on this machine by the same compiler, clang 14: whole builds as a ratio to the flat loop that is timed
-# in turns with them, in brackets the spread; then how many times as fast two threads are as one. A minute, --quick a
-# quarter of one, and building. On Debian 12, as root or with sudo. Leave the machine alone while it runs.
+# in turns with them, in brackets the spread. A minute, --quick a quarter of one, and building. On Debian 12, as root or
+# with sudo. Leave the machine alone while it runs.
 set -eu
 me=bench/web.sh
 cd "$(dirname "$0")/.."
@@ -39,16 +39,13 @@ simd="-msimd128"
 
 # shellcheck disable=SC2086  # several words
 {
-    build native clang++-14 -pthread
+    build native clang++-14
     build scalar.js em++ $memory
     build simd.js em++ $simd $memory
-    build threads.js em++ $simd $memory -pthread -sPTHREAD_POOL_SIZE=2
     echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; node $(node --version)"
     measure native $out/native >$out/results
     measure wasm $node $out/scalar.js >>$out/results
     measure simd128 $node $out/simd.js | awk '$3 == "simd128"' >>$out/results
-    measure native $out/native threads >$out/threads
-    measure simd128 $node $out/threads.js threads >>$out/threads
 }
 
 # results: column, set, instruction set, ratio, spread, nanoseconds a light
@@ -62,7 +59,3 @@ awk '
             print "| " sets[i] " | " cell("simd128 " sets[i] " simd128") " | " cell("native " sets[i] " simd128") " | " \
                 cell("wasm " sets[i] " scalar") " | " cell("native " sets[i] " scalar") " |"
     }' $out/results
-echo
-echo "| two threads, 100,000 lights | from other work | from sleep | mere arithmetic |"
-echo "| --- | --- | --- | --- |"
-sed 's/^\([^ ]*\) \(.*\) \(.*\) /| \1 | \2 | \3 | /; s/$/ |/' $out/threads

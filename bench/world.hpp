@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light sets as programs have them: in world space, as vec4s or in structs of the program's own; and seen by several views
-// in a frame.
+// Light sets as programs have them: in world space, as vec4s or in structs of the program's own.
 #pragma once
 
 #include "lens.hpp"
@@ -105,29 +104,4 @@ inline std::vector<WorldFrame> many_lights_frames() {
         frames.push_back(
             world_frame(lens, glm::rotate(glm::mat4(1), float(i) * 0.15f / 60, glm::vec3(0, 1, 0)), lights));
     return frames;
-}
-
-/// Views of what a camera stands among: how each is turned or moved from the camera's own, and the lens of all.
-struct SeveralViews {
-    const char* name;
-    Lens lens;
-    std::vector<glm::mat4> from_camera;
-};
-
-/// Two eyes, 64 mm apart where a unit is a metre, and six faces of a cube, the first of which looks where the camera does.
-inline std::vector<SeveralViews> several_views(const Lens& lens) {
-    const auto shift = [](float x) { return glm::translate(glm::mat4(1), glm::vec3(x, 0, 0)); };
-    const auto turn = [](float degrees, glm::vec3 axis) {
-        return glm::rotate(glm::mat4(1), glm::radians(degrees), axis);
-    };
-    const glm::vec3 up = {0, 1, 0}, right = {1, 0, 0};
-    Lens of_cube;
-    of_cube.tan_half_height = 1;
-    of_cube.screen = {1024, 1024};
-    return {
-        {"two eyes", lens, {shift(0.032f), shift(-0.032f)}},
-        {"six cube faces",
-         of_cube,
-         {glm::mat4(1), turn(90, up), turn(180, up), turn(270, up), turn(90, right), turn(-90, right)}},
-    };
 }

@@ -24,7 +24,8 @@ while [ $# -gt 0 ]; do
     shift
 done
 
-install_packages make python3 emscripten node-acorn binaryen nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
+install_packages make python3 emscripten node-acorn binaryen esbuild nodejs libglm-dev libtinygltf-dev \
+    nlohmann-json3-dev
 make_build_folder
 echo "$me: building in build/web, which takes about two minutes the first time"
 make -s -j "$(nproc)" -f examples/web/web.mk 2>build/web.log || { cat build/web.log; fail "the build failed"; }

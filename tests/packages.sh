@@ -93,7 +93,7 @@ make_build_folder() {
 
 # build_npm_package [PACKAGE...]: makes build/npm/lightbin, and installs what that takes and the packages.
 build_npm_package() {
-    install_packages nodejs emscripten node-acorn binaryen "$@"
+    install_packages nodejs emscripten node-acorn binaryen esbuild "$@"
     command -v npm >/dev/null || install_packages npm
     make_build_folder
     sh packaging/npm/build.sh

@@ -1,16 +1,14 @@
 #!/bin/sh
 # sh tests/platforms.sh [NAME...]: the same tests on every platform that a user may have, on Debian 12, as root or with
 # sudo. Builds them with each compiler, runs them - in an emulator, Wine or node where the machine is another - and sees
-# that all platforms give the same light lists, byte for byte. Installs what the platforms asked for lack. All of them
-# take a quarter of an hour on two cores; what was built is kept in build/platforms.
+# that all platforms give the same light lists, byte for byte, as those that tests/oracle proves. Installs what the
+# platforms asked for lack. What was built is kept in build/platforms: the first run takes much longer than the next.
 #   NAME...  of these platforms only
 #   --list   names them
 #   --quick  of each platform the lists alone
 # The tests of a platform, or a script's of this folder:
-#   lists    tests/platforms/lists.cpp: every option and instruction set, hashes of the lists
+#   lists    tests/platforms/lists.cpp: every option and instruction set, hashes of the lists; Binners in several threads
 #   unit     tests/unit, as far as they need doctest and GLM alone
-#   oracle   tests/oracle: no light is missed, by exact arithmetic, in 1,000 lights of each family
-#   threads  tests/platforms/threads.cpp: Binners in several threads at once
 #   c        tests/c/contract.c: what lightbin.h promises
 #   guest    tests/guest: allocation and exceptions
 set -eu
@@ -20,7 +18,7 @@ cd "$(dirname "$0")/.."
 
 listing=
 wanted=
-all="lists unit oracle threads"
+all="lists unit"
 for word in "$@"; do
     case $word in
     --list) listing=yes ;;
@@ -101,8 +99,6 @@ judged() {
         ;;
     unit | guest) sed -n 's/.* assertions: *\([0-9]*\) .*/\1 assertions/p' "$folder/$1.txt" ;;
     c) cat "$folder/c.txt" ;;
-    oracle) awk 'NF == 6 { cases += $2; missed += $5 } END { print cases " cases, " missed " missed" }' "$folder/oracle.txt" ;;
-    threads) sed -n 's/\([0-9]* Binners at once\).*/\1/p' "$folder/threads.txt" ;;
     esac
 }
 
@@ -119,12 +115,11 @@ platform() {
     said=
     for program in $programs; do
         case $name:$program in
-        *:oracle) argument=1000 ;;
         # A request of more memory than there is ends the program there.
         address:unit) argument="--no-colors=true --source-file-exclude=*/memory.cpp" ;;
-        # Without threads.
-        wasm:unit | wasm-simd:unit) argument="--no-colors=true --test-case-exclude=*on*any*number*of*threads" ;;
         *:unit) argument=--no-colors=true ;;
+        wasm:lists | wasm-simd:lists) argument=60 ;;
+        *:lists) argument="60 threads" ;;
         *) argument= ;;
         esac
         # shellcheck disable=SC2086  # or none
@@ -138,7 +133,7 @@ platform() {
 }
 
 # On this machine. Its lists are what all others are held against.
-host="g++-12 make doctest-dev libglm-dev libboost-dev"
+host="g++-12 make doctest-dev libglm-dev"
 # Debian's libc++ 14 and 19 cannot be installed side by side: the older one is unpacked here.
 libcxx=$out/libc++-14.files/usr/lib/llvm-14
 start_wine() {
@@ -169,7 +164,7 @@ prepare() {
     jobs=$(nproc)
     # A cross compiler does not look where header-only libraries are.
     mkdir -p "$out/headers" "$out/gcc"
-    for library in doctest glm boost; do
+    for library in doctest glm; do
         ln -sfn /usr/include/$library "$out/headers/$library"
     done
     : >"$out/table.md"
@@ -188,23 +183,22 @@ platform no-avx "the same on an x86-64 without AVX (qemu, Nehalem)" qemu-user-st
 platform no-sse4 "the same on an x86-64 without SSE4.1 (qemu, Conroe)" qemu-user-static "scalar" "qemu-x86_64-static -cpu Conroe" "" "$all" gcc
 platform no-avx512 "the same without AVX-512 (qemu, Haswell)" qemu-user-static "scalar simd128 avx2" "qemu-x86_64-static -cpu Haswell" "" "$all" gcc
 with g++-12 "-std=c++23"
-platform gcc-23 "g++ 12, C++23" "" any "" "" "${all% oracle*}"
+platform gcc-23 "g++ 12, C++23" "" any
 with g++-12 "-m32 -msse2 -mfpmath=sse -std=c++20 -idirafter/usr/include/x86_64-linux-gnu"
 platform x86-32 "32-bit x86, g++ 12" g++-12-multilib scalar
 
 with clang++-14 "-std=c++20"
 platform clang-14 "clang 14, libstdc++, C++20" clang-14 any
 with clang++-14 "-std=c++2b"
-platform clang-14-23 "clang 14, libstdc++, C++23" clang-14 any "" "" "${all% oracle*}"
+platform clang-14-23 "clang 14, libstdc++, C++23" clang-14 any
 with clang++-19 "-std=c++20"
 platform clang-19 "clang 19, libstdc++, C++20" clang-19 any
 with clang++-19 "-std=c++23"
-platform clang-19-23 "clang 19, libstdc++, C++23" clang-19 any "" "" "${all% oracle*}"
-# Boost 1.74 derives from what C++17 removed.
-with clang++-19 "-std=c++20 -stdlib=libc++ -D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION"
+platform clang-19-23 "clang 19, libstdc++, C++23" clang-19 any
+with clang++-19 "-std=c++20 -stdlib=libc++"
 platform libc++-19 "clang 19, libc++, C++20" "clang-19 libc++-19-dev libc++abi-19-dev" any
 with clang++-19 "-std=c++23 -stdlib=libc++"
-platform libc++-19-23 "clang 19, libc++, C++23" "clang-19 libc++-19-dev libc++abi-19-dev" any "" "" "${all% oracle*}"
+platform libc++-19-23 "clang 19, libc++, C++23" "clang-19 libc++-19-dev libc++abi-19-dev" any
 
 with clang++-14 "-std=c++20 -nostdinc++ -isystem $libcxx/include/c++/v1" \
     "-nostdlib++ -L$libcxx/lib -Wl,-Bstatic -lc++ -lc++abi -Wl,-Bdynamic -ldl"
@@ -228,16 +222,16 @@ emscripten_link="-fexceptions -sINITIAL_MEMORY=1GB -sEXIT_RUNTIME=1"
 node="node --no-experimental-fetch"
 simd="-std=c++20 -fexceptions -msimd128"
 with em++ "-std=c++20 -fexceptions" "$emscripten_link" ""
-platform wasm "WebAssembly (node), emscripten 3.1.6" "emscripten node-acorn nodejs" scalar "$node" .js "${all% threads}"
+platform wasm "WebAssembly (node), emscripten 3.1.6" "emscripten node-acorn nodejs" scalar "$node" .js
 with em++ "$simd" "$emscripten_link" ""
-platform wasm-simd "the same with simd128" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js "${all% threads}"
-with em++ "$simd" "$emscripten_link -sPTHREAD_POOL_SIZE=16"
-platform wasm-threads "the same with threads" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js "lists threads"
+platform wasm-simd "the same with simd128" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js
+with em++ "$simd" "$emscripten_link -sPTHREAD_POOL_SIZE=32"
+platform wasm-threads "the same with threads" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js lists
 
 with g++-12 "-std=c++20 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 platform address "address and undefined behaviour sanitizer, g++ 12" "" any "" "" "$all c guest"
 with clang++-19 "-std=c++20 -O1 -g -fsanitize=thread"
-platform thread "thread sanitizer, clang 19" "clang-19 libclang-rt-19-dev" any "" "" "lists threads"
+platform thread "thread sanitizer, clang 19" "clang-19 libclang-rt-19-dev" any "" "" lists
 # Only what is compiled here says what it has written: no test library, no compiled part of the standard one.
 with clang++-19 "-std=c++20 -O1 -g -fsanitize=memory -D_GLIBCXX_EXTERN_TEMPLATE=0"
 platform memory "memory sanitizer, clang 19" "clang-19 libclang-rt-19-dev" scalar "" "" lists

@@ -4,12 +4,11 @@
 # renderer. Takes about three minutes, and some more the first time.
 #   --serve  shows 5,000 moving lights instead, with PlayCanvas' own clusters and with lightbin, at
 #            http://localhost:8000/page.html
-#   --bench  measures both in turns instead: lists, pictures and milliseconds
 set -eu
 me=tests/playcanvas.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-takes "nothing, --serve, --bench" "--serve|--bench" "$@"
+takes "nothing, --serve" "--serve" "$@"
 
 build_npm_package chromium
 
@@ -17,8 +16,5 @@ tests=build/playcanvas-tests
 fetch_npm $tests playcanvas@2.23.0 playwright-core@1.65.1
 modules=$PWD/$tests/node_modules
 export PLAYCANVAS="$modules/playcanvas" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
-case ${1-} in
---serve) exec node tests/three/server.mjs 8000 tests/playcanvas ;;
---bench) exec node tests/playcanvas/bench.mjs ;;
-esac
+[ $# -eq 0 ] || exec node tests/server.mjs 8000 tests/playcanvas
 run_node_tests tests/playcanvas/pictures.mjs $tests/pictures.log

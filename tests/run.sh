@@ -15,7 +15,7 @@ oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
-javascript="emscripten node-acorn binaryen nodejs node-typescript"
+javascript="emscripten node-acorn binaryen esbuild nodejs node-typescript"
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
 install_packages $tools $libraries $oracle $examples $renderers $opengl $javascript $shaders
@@ -70,7 +70,7 @@ echo "$me: the longest tests: $(sed -n 's/.*Test *#[0-9]*: \([^ ]*\).* \([0-9.]*
     sort -rn | head -n 5 | paste -s -d , | sed 's/,/, /g')"
 [ -z "$failed" ] || fail "not every test passed; the full log is build/dev-tests.log"
 
-tiers=$(build/dev/tests/unit/unit --test-case='this machine has*' | sed -n 's/.*tiers: //p')
+tiers=$(build/dev/tests/platforms/platforms.lists 1 | sed -n 's/^tiers: //p')
 echo "$me: kernels that ran on this machine: $tiers"
 case $tiers in
 *avx512*) ;;

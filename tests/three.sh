@@ -3,14 +3,11 @@
 # Installs what is missing, builds the package, fetches three.js, and runs it in headless Chromium on a software
 # renderer. Takes about two minutes, and some more the first time.
 #   --serve  shows the page with 5,000 moving lights instead, at http://localhost:8000/page.html
-#   --bench  times frames of three.js' own lights and of the adapter's instead, in turns: the table of docs/threejs.md.
-#            Takes four minutes, most of them for three.js' own shaders to be compiled
 set -eu
 me=tests/three.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-takes "nothing, --serve, --bench" "--serve|--bench" "$@"
-[ $# -le 1 ] || fail "takes one option"
+takes "nothing, --serve" "--serve" "$@"
 
 build_npm_package chromium
 
@@ -18,8 +15,5 @@ tests=build/three-tests
 fetch_npm $tests three@0.187.0 playwright-core@1.65.1
 modules=$PWD/$tests/node_modules
 export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
-case ${1-} in
---serve) exec node tests/three/server.mjs 8000 ;;
---bench) exec node tests/three/bench.mjs ;;
-esac
+[ $# -eq 0 ] || exec node tests/server.mjs 8000 tests/three
 run_node_tests tests/three/pictures.mjs $tests/pictures.log

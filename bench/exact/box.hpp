@@ -188,6 +188,21 @@ struct FlatBox {
     double error;
 };
 
+/// Of a box whose corners are, in the camera's axes, balls of no radius: to_camera(corner).
+template <class ToCamera> FlatBox flat_box(const BoxLight& light, const ToCamera& to_camera) {
+    FlatBox box = {};
+    const std::vector<Vector> corners = exact_corners(light);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const CameraBall seen = to_camera(corners[i]);
+        const double at[] = {nearly(seen.x), nearly(seen.y), nearly(seen.depth)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.corners[i][k] = at[k];
+            box.error = std::max(box.error, std::abs(at[k]) * 0x1p-52);  // the digits that nearly() cuts off
+        }
+    }
+    return box;
+}
+
 /// Beyond doubt the box does not meet the block of tiles [x0, x1) x [y0, y1) between these depths.
 inline bool apart(Filter& filter, int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBox& box) {
     using Direction = Filter::Direction;

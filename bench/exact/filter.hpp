@@ -86,30 +86,6 @@ public:
         return meets_wedge(1, {row(y0), row(y1)}, depths, ball);
     }
 
-    /// Whether the ball meets the box around a tile's cell; nothing: unknown.
-    std::optional<bool> meets_box(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
-        if (std::isinf(depths.max)) return std::nullopt;
-        double least = 0, most = 0;  // the squared distance, rounded either way
-        const auto add = [&](double low, double high, double c) {
-            const double gap = std::max({low - c, c - high, 0.0}),
-                         error = 0x1p-48 * (std::abs(low) + std::abs(high) + std::abs(c)),
-                         below = std::max(gap - error, 0.0);
-            least += below * below;
-            most += (gap + error) * (gap + error);
-        };
-        const auto across = [&](const FlatLine& low, const FlatLine& high, double c) {
-            add(std::min(low.at(depths.min), low.at(depths.max)),
-                std::max(high.at(depths.min), high.at(depths.max)), c);
-        };
-        across(column(x), column(x + 1), ball.x);
-        across(row(y), row(y + 1), ball.y);
-        add(depths.min, depths.max, ball.depth);
-        const double reach = ball.radius * ball.radius;
-        if (reach > 0x1p-800 && some(depths) && most * (1 + 0x1p-48) <= reach) return true;
-        if (least > 0x1p-800 && least > reach * (1 + 0x1p-48)) return false;
-        return std::nullopt;
-    }
-
     /// The squared distance of the ball's centre from the wedge of a whole column or row of tiles, give or take 2^-48
     /// of the sizes involved.
     double column_distance2(int x, const FlatDepths& depths, const FlatBall& ball) {

@@ -20,11 +20,7 @@
 
 #include "camera.hpp"
 
-#if defined(ORACLE_WITHOUT_GMP)  // for another machine, which has no such library installed here: slower
-#include <boost/multiprecision/cpp_int.hpp>
-#else
 #include <boost/multiprecision/gmp.hpp>
-#endif
 
 #include <cassert>
 #include <cmath>
@@ -35,13 +31,8 @@
 
 namespace oracle {
 
-#if defined(ORACLE_WITHOUT_GMP)
-using RationalBackend = boost::multiprecision::cpp_rational_backend;
-#else
-using RationalBackend = boost::multiprecision::gmp_rational;
-#endif
 // Expression templates off: auto and ?: then mean what they say.
-using Rational = boost::multiprecision::number<RationalBackend, boost::multiprecision::et_off>;
+using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
 
 inline Rational exact(double value) {
     assert(std::isfinite(value));
@@ -50,11 +41,7 @@ inline Rational exact(double value) {
 
 /// The value within 2^-52 of itself, if it is in the range of double; a double as it is.
 inline double nearly(const Rational& value) {
-#if defined(ORACLE_WITHOUT_GMP)
-    return value.convert_to<double>();
-#else
     return mpq_get_d(value.backend().data());  // many times as fast as Boost's, which rounds to nearest
-#endif
 }
 
 inline Rational square(const Rational& v) {

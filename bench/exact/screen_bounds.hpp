@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Exact screen bounds: where in the image the part of a ball, or of a spot, beyond the near plane ends.
+// Exact screen bounds: where in the image the part of a ball beyond the near plane ends.
 //
 // Numbers have 1,100 bits and exponents without end. Inputs are floats, and a sum of two products of floats spans at most
 // 555 bits, so each sum that the formulas below take of inputs is exact; roots and quotients are rounded, and what they
@@ -8,14 +8,12 @@
 #pragma once
 
 #include "oracle.hpp"
-#include "spot.hpp"
 
 #include <boost/multiprecision/gmp.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 namespace oracle {
 
@@ -58,36 +56,23 @@ public:
         return within(axis, -largest_slope(-c, z, r), largest_slope(c, z, r));
     }
 
-    /// Of a spot whose ball lies wholly between the near and the far plane.
-    AxisExtent extent(int axis, const CameraBall& ball, const ExactSpot& spot) const {
-        if (spot.whole()) return extent(axis, ball);
-        const CameraBall direction = oracle_.in_camera({spot.axis, 0});
-        const Wide length = sqrt(wide(dot(spot.axis, spot.axis))), a = wide(direction.x) / length,
-                   b = wide(direction.y) / length, a_z = wide(direction.depth) / length;
-        const Wide c = wide(axis == 0 ? ball.x : ball.y);
-        const Wide along = axis == 0 ? a : b, other = axis == 0 ? b : a;
-        return within(axis, -largest_slope(-c, ball, spot, -along, other, a_z),
-                      largest_slope(c, ball, spot, along, other, a_z));
-    }
-
     /// Whether rational arithmetic agrees that the ball reaches the extent's ends in the viewport, and not 2^-20 pixels
     /// beyond them.
     bool agrees(int axis, const AxisExtent& extent, const CameraBall& ball) const {
-        return agrees(axis, extent, [&](const Edges& edges) -> std::optional<bool> {
+        const auto meets_edges = [&](const Rational& low, const Rational& high) {
             Slabs slabs;
-            (axis == 0 ? slabs.x : slabs.y) = slab(axis, edges);
+            (axis == 0 ? slabs.x : slabs.y) = slab(axis, {low, high});
             Depths depths = oracle_.range();
             if (extent.first <= extent.last) depths.max.reset();  // the far plane cuts no bounds
             return meets(slabs, depths, ball);
-        });
-    }
-    /// The same of a spot, as far as there are certificates.
-    bool agrees(int axis, const AxisExtent& extent, const ExactSpot& spot) const {
-        return agrees(axis, extent, [&](const Edges& edges) {
-            const Edges all = {-far_off(), far_off()};
-            return SpotSearch(oracle_.half_spaces(axis == 0 ? edges : all, axis == 0 ? all : edges, {}), spot)
-                .verdict();
-        });
+        };
+        const double side = axes_[static_cast<std::size_t>(axis)].side, slack = 0x1p-20;
+        if (extent.first > extent.last) return !meets_edges(0, exact(side));
+        if (extent.low > 0 && (meets_edges(-far_off(), exact(extent.low - slack)) ||
+                               !meets_edges(-far_off(), exact(extent.low + slack))))
+            return false;
+        return extent.high >= side || (!meets_edges(exact(extent.high + slack), far_off()) &&
+                                       meets_edges(exact(extent.high - slack), far_off()));
     }
 
 private:
@@ -116,20 +101,6 @@ private:
         return (c + sqrt(h2 > 0 ? h2 : Wide(0))) / near_;
     }
 
-    /// Of a spot: of the ball if that is touched within the cone, else of the apex and the rim, see project_spots.inl.
-    Wide largest_slope(const Wide& c, const CameraBall& ball, const ExactSpot& spot, const Wide& a,
-                       const Wide& other, const Wide& a_z) const {
-        const Wide z = wide(ball.depth), r = wide(ball.radius), cosine = wide(spot.cosine);
-        const Wide s = largest_slope(c, z, r);
-        if (a - s * a_z >= cosine * sqrt(1 + s * s)) return s;
-        const Wide x = c + r * cosine * a, y = z + r * cosine * a_z;
-        const Wide rho2 = r * r * (1 - cosine) * (1 + cosine), q = x * a + y * a_z;
-        const Wide d = (x * x + y * y - rho2) * other * other + q * q;
-        const Wide rim = (x * y + rho2 * a * a_z + sqrt(rho2 * (d > 0 ? d : Wide(0)))) /
-                         (y * y - rho2 * (1 - a_z) * (1 + a_z));
-        return std::max<Wide>(rim, c / z);
-    }
-
     AxisExtent within(int i, const Wide& low_slope, const Wide& high_slope) const {
         const Axis& axis = axes_[static_cast<std::size_t>(i)];
         const Wide low = axis.scale * low_slope + axis.offset, high = axis.scale * high_slope + axis.offset;
@@ -140,19 +111,6 @@ private:
                             axis.tiles - 1);
         };
         return {clamped(low).convert_to<double>(), clamped(high).convert_to<double>(), tile(low), tile(high)};
-    }
-
-    template <class Meets> bool agrees(int axis, const AxisExtent& extent, Meets meets_edges) const {
-        const double side = axes_[static_cast<std::size_t>(axis)].side, slack = 0x1p-20;
-        if (extent.first > extent.last) return meets_edges({0, exact(side)}) != true;
-        const auto wrong = [&](const Rational& low, const Rational& high, bool expected) {
-            return meets_edges({low, high}) == !expected;
-        };
-        if (extent.low > 0 && (wrong(-far_off(), exact(extent.low - slack), false) ||
-                               wrong(-far_off(), exact(extent.low + slack), true)))
-            return false;
-        return extent.high >= side || !(wrong(exact(extent.high + slack), far_off(), false) ||
-                                        wrong(exact(extent.high - slack), far_off(), true));
     }
 
     const Oracle& oracle_;

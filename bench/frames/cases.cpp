@@ -144,18 +144,3 @@ int frame_of(const std::string& name) {
     const std::string digits = name.substr(last + 1);  // all of it, if there is nothing else
     return digits.empty() || digits.size() > 9 ? -1 : std::stoi(digits);
 }
-
-Scene with_panes(Scene scene, std::size_t count) {
-    if (!scene.transparent.empty()) return scene;
-    Dice dice(2013);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Light& light = scene.lights[i * scene.lights.size() / count];
-        const float side = 0.5f * light.range, turn = dice.between(0, glm::two_pi<float>());
-        const glm::vec3 along = 0.5f * side * glm::vec3(std::cos(turn), 0, std::sin(turn)), up(0, side, 0),
-                        normal = glm::normalize(glm::cross(along, up));
-        const glm::vec3 a = light.position - along - 0.5f * up, b = a + 2.0f * along;
-        for (const glm::vec3& corner : {a, b, b + up, a, b + up, a + up})
-            scene.transparent.push_back({corner, normal, {0.6f, 0.8f, 1}});
-    }
-    return scene;
-}

@@ -26,6 +26,3 @@ std::vector<Light> few_lights(const std::vector<Light>& lights, double time = 0)
 
 /// Returns the number that a camera's name ends in, or -1: of a path, the frame.
 int frame_of(const std::string& name);
-
-/// Returns the scene with upright panes through so many of its lights, half a range wide, if it has no panes.
-Scene with_panes(Scene scene, std::size_t count);

@@ -19,7 +19,7 @@ void begin_radiance(Stage& stage, GLuint surface_depth, GLuint test_depth) {
 void show_radiance(Stage& stage) {
     glDisable(GL_BLEND);
     stage.memory.read_from(unit_radiance, surface_target(stage, "radiance"));
-    stage.memory.draw_to({stage.shown()}, 0);
+    stage.memory.draw_to({stage.drawn()}, 0);
     stage.use(stage.shaders().everywhere_vertex(), stage.shaders().show_fragment());
     stage.geometry.draw_everywhere();
     stage.lap("show");
@@ -42,6 +42,5 @@ Technique deferred(int g_buffer_bits) {
                     show_radiance(stage);
                 },
             .tolerance = g_buffer_bits == 32 ? 1 : 6,
-            .g_buffer_bits = g_buffer_bits,
-            .multisampled = false};
+            .g_buffer_bits = g_buffer_bits};
 }

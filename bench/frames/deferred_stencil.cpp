@@ -79,6 +79,5 @@ Technique deferred_stencil(int g_buffer_bits) {
                     show_radiance(stage);
                 },
             .tolerance = g_buffer_bits == 32 ? 1 : 6,
-            .g_buffer_bits = g_buffer_bits,
-            .multisampled = false};
+            .g_buffer_bits = g_buffer_bits};
 }

@@ -16,7 +16,5 @@ Technique forward_every_light() {
                 begin_picture(stage);
                 depth_pre_pass(stage);
                 shade_forward(stage, every_light());
-                if (stage.settings().transparent) shade_panes(stage, every_light());
-                stage.resolve();
             }};
 }

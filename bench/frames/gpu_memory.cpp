@@ -31,10 +31,6 @@ Format format_of(GLenum format) {
     }
 }
 
-GLenum kind_of(bool multisampled) {
-    return multisampled ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
-}
-
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
     case GL_R8UI:
@@ -94,51 +90,28 @@ std::size_t GpuMemory::bytes() const {
     return sum;
 }
 
-std::size_t GpuMemory::multisampled_bytes() const {
-    std::size_t sum = 0;
-    for (const auto& [name, target] : targets_)
-        if (target.multisampled) sum += target.bytes;
-    return sum;
-}
-
-GLuint GpuMemory::target(const std::string& name, GLenum format, int width, int height, int samples) {
+GLuint GpuMemory::target(const std::string& name, GLenum format, int width, int height) {
     Target& target = targets_[name];
     if (target.texture != 0) return target.texture;
     const Format texels = format_of(format);
     target.format = format;
-    target.multisampled = samples > 1;
-    target.bytes = texels.bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                   static_cast<std::size_t>(samples);
-    const GLenum kind = kind_of(target.multisampled);
+    target.bytes = texels.bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     glGenTextures(1, &target.texture);
-    glActiveTexture(GL_TEXTURE0 + unit_count);
-    glBindTexture(kind, target.texture);
-    if (target.multisampled) {
-        glTexImage2DMultisample(kind, samples, format, width, height, GL_TRUE);
-        GLint given = 0;  // more samples than were asked for, if there is no such number
-        glGetTexLevelParameteriv(kind, 0, GL_TEXTURE_SAMPLES, &given);
-        if (given != samples) {
-            while (glGetError() != GL_NO_ERROR) {  // or whoever draws next is told of it
-            }
-            throw std::runtime_error("this OpenGL has no targets of " + std::to_string(samples) + " samples");
-        }
-    } else {
-        glTexImage2D(kind, 0, static_cast<GLint>(format), width, height, 0, texels.layout, texels.type,
-                     nullptr);
-        glTexParameteri(kind, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        glTexParameteri(kind, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
+    read_from(unit_count, target.texture);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, texels.layout, texels.type,
+                 nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     if (glGetError() != GL_NO_ERROR)
         throw std::runtime_error("there is no target of " + std::to_string(width) + " x " +
-                                 std::to_string(height) + " pixels of " + std::to_string(samples) +
-                                 " samples for " + name + ", " + std::to_string(target.bytes >> 20) + " MiB");
+                                 std::to_string(height) + " pixels for " + name + ", " +
+                                 std::to_string(target.bytes >> 20) + " MiB");
     return target.texture;
 }
 
 void GpuMemory::read_from(Unit unit, GLuint texture) {
-    const auto found = std::ranges::find(targets_, texture, [](const auto& t) { return t.second.texture; });
     glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(kind_of(found != targets_.end() && found->second.multisampled), texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
 }
 
 GLuint GpuMemory::framebuffer(std::initializer_list<GLuint> colours, GLuint depth) {

@@ -35,11 +35,9 @@ public:
     /// Frees everything.
     void clear();
     std::size_t bytes() const;
-    std::size_t multisampled_bytes() const;  ///< of them, those of targets of several samples
 
-    /// A texture to draw to and read from; made if there is none of that name since clear(). Of more than one sample, it
-    /// is a multisampled one.
-    GLuint target(const std::string& name, GLenum format, int width, int height, int samples);
+    /// A texture to draw to and read from; made if there is none of that name since clear().
+    GLuint target(const std::string& name, GLenum format, int width, int height);
     void read_from(Unit unit, GLuint target);
     /// Binds a framebuffer of these for drawing and reading; depth 0: none.
     void draw_to(std::initializer_list<GLuint> colours, GLuint depth);
@@ -51,7 +49,6 @@ public:
         const std::span data(range);
         return buffer(name, data.size_bytes(), data.data());
     }
-    GLuint known(const std::string& name) const { return buffers_.at(name).name; }  ///< a buffer() that is there
     /// Shaders read the bytes of a buffer() at the unit, as texels of that format.
     void read_texels(Unit unit, GLenum format, GLuint buffer);
 
@@ -59,7 +56,6 @@ private:
     struct Target {
         GLuint texture = 0;
         GLenum format = 0;
-        bool multisampled = false;
         std::size_t bytes = 0;
     };
     struct Buffer {

@@ -30,7 +30,7 @@ Technique light_indexed(int id_bits) {
                     .capacity = static_cast<std::uint32_t>(stage.lights().size())};
                 begin_picture(stage);
                 depth_pre_pass(stage);
-                const auto bounds = memory->bounds.reduce_on_gpu(stage, stage.depth());
+                const auto bounds = memory->bounds.reduce(stage);
                 const auto grid = memory->lists.bin(stage, bounds);
                 memory->encoded.resize(lightbin::encoded_bytes(format, grid.ranges().size(), 0));
                 value_of(lightbin::encode(grid, format, memory->encoded));
@@ -39,6 +39,5 @@ Technique light_indexed(int id_bits) {
                 stage.memory.read_texels(unit_lists, id_bits == 8 ? GL_R8UI : GL_R16UI, lists);
                 stage.lap("upload");
                 shade_forward(stage, listed_lights({.format = format}));
-                stage.resolve();
             }};
 }

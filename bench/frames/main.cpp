@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// frames [--quick] [--counts] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene
+// frames [--quick] [--counts] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene
 // and on the named ones, or those of bench/scenes.
-#include "conclusions.hpp"
 #include "plan.hpp"
 #include "report.hpp"
 #include "runner.hpp"
@@ -10,7 +9,6 @@
 #include "../console.hpp"
 
 #include <gl_context.hpp>
-#include <picture.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -21,19 +19,7 @@
 
 namespace {
 
-// A PNG named after the view, where a file's name can be so.
-void write_picture(const Job& job, const Scene& scene, const RunSettings& run, const Runner& runner) {
-    Picture picture{run.width, run.height, {}};
-    for (std::size_t i = 0; i < runner.reference().size(); ++i)
-        if (i % 4 != 3) picture.rgb.push_back(runner.reference()[i]);
-    std::string name = "frames " + scene.name + ", " + job.table + ", " + job.camera.name + ", " +
-                       counted(scene.lights.size(), "light") + ", MSAA " +
-                       std::to_string(job.settings.samples) + ".png";
-    std::ranges::replace(name, '/', '_');
-    write_png(picture, name);
-}
-
-std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pictures, LeftOut& left_out) {
+std::vector<Row> draw_all(std::vector<SceneJobs> plan, const RunSettings& run, LeftOut& left_out) {
     Progress progress;
     std::vector<Row> rows;
     for (SceneJobs& jobs : plan) {
@@ -44,7 +30,6 @@ std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pic
             if (!job.lights.empty()) jobs.scene.lights = job.lights;
             const std::vector<Row> made = runner.run(job.table, job.camera, job.techniques, job.settings);
             rows.insert(rows.end(), made.begin(), made.end());
-            if (pictures && !made.empty()) write_picture(job, jobs.scene, run, runner);
         }
         write_csv(rows);  // what there is, if the run is broken off
     }
@@ -61,8 +46,7 @@ bool pictures_are_as_stated(const std::vector<Row>& rows) {
 }
 
 int run(Arguments arguments) {
-    const bool quick = arguments.take("--quick"), pictures = arguments.take("--pictures"),
-               only_counts = arguments.take("--counts");
+    const bool quick = arguments.take("--quick"), only_counts = arguments.take("--counts");
     RunSettings run;
     {
         const OffscreenContext context(0);
@@ -87,10 +71,8 @@ int run(Arguments arguments) {
     const std::vector<SceneJobs> plan = make_plan(arguments.scenes_or_fixtures(), quick);
     write_csv({});  // or a folder that can't be written to is noticed in the end
     LeftOut left_out;
-    const std::vector<Row> rows =
-        with_computed_memory(draw_all(plan, run, pictures, left_out), sample_counts);
+    const std::vector<Row> rows = draw_all(plan, run, left_out);
     print_rows(rows);
-    print_conclusions(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())
         std::printf("%s\n", line.c_str());

@@ -27,28 +27,9 @@ void depth_pre_pass(Stage& stage) {
 
 void shade_forward(Stage& stage, const LightLookup& lights) {
     stage.memory.draw_to({stage.drawn()}, stage.depth());
-    if (stage.settings().three_shaders) {
-        for (const int material : {0, 1, 2}) {
-            stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights, material));
-            stage.geometry.draw_opaque(material);
-        }
-    } else {
-        stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights));
-        stage.geometry.draw_opaque();
-    }
+    stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights));
+    stage.geometry.draw_opaque();
     stage.lap("shade");
-}
-
-void shade_panes(Stage& stage, const LightLookup& lights) {
-    stage.memory.draw_to({stage.drawn()}, stage.depth());
-    stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights, 0, 0.4f));
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glDepthMask(GL_FALSE);
-    stage.geometry.draw_panes();
-    glDepthMask(GL_TRUE);
-    glDisable(GL_BLEND);
-    stage.lap("panes");
 }
 
 GLuint surface_target(Stage& stage, const char* name) {
@@ -75,45 +56,25 @@ void read_g_buffer(Stage& stage, GLuint depth) {
 
 void shade_deferred(Stage& stage, const LightLookup& lights) {
     read_g_buffer(stage, stage.depth());
-    stage.memory.draw_to({stage.shown()}, 0);
+    stage.memory.draw_to({stage.drawn()}, 0);
     stage.use(stage.shaders().everywhere_vertex(), stage.shaders().deferred_fragment(lights));
     stage.geometry.draw_everywhere();
     stage.lap("shade");
 }
 
-void set_reduction(Stage& stage, GLuint program, GLuint depth) {
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(stage.view());
-    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
-    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
-    stage.memory.read_from(unit_depth, depth);
-}
-
-lightbin::ZBounds DepthBounds::reduce_on_cpu(Stage& stage) {
-    const lightbin::View view = stage.view();
-    const auto [width, height] = view.viewport();
-    depth_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    for (auto* side : {&min_, &max_})
-        side->resize(view.tile_count());
-    stage.memory.draw_to({}, stage.depth());
-    glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
-    stage.lap("read back");
-    const auto bounds = value_of(
-        lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true}, {.min = min_, .max = max_}));
-    stage.lap("reduce");
-    return bounds;
-}
-
-lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool background) {
+lightbin::ZBounds DepthBounds::reduce(Stage& stage) {
     const lightbin::View view = stage.view();
     lightbin::ReduceShaderOptions options;
     options.language = lightbin::ShaderLanguage::glsl_330;
     options.stage = lightbin::ShaderStage::fragment;
-    options.samples = stage.settings().samples;
-    options.skip_background = !background;
+    options.skip_background = true;
     const GLuint program = stage.use(stage.shaders().everywhere_vertex(),
                                      "#version 330 core\n" + value_of(lightbin::reduce_shader(options)).text);
-    set_reduction(stage, program, depth);
-    const GLuint reduced = stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y(), 1);
+    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
+    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
+    stage.memory.read_from(unit_depth, stage.depth());
+    const GLuint reduced = stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y());
     stage.memory.draw_to({reduced}, 0);
     glViewport(0, 0, view.tiles_x(), view.tiles_y());
     stage.geometry.draw_everywhere();
@@ -143,7 +104,8 @@ lightbin::LightGrid<std::uint32_t> IntervalLists::bin(Stage& stage, const lightb
         const lightbin::ListRange all = grid.ranges()[tile];
         const auto offset = static_cast<std::uint32_t>(ids_.size());
         for (const std::uint32_t id : grid.ids().subspan(all.offset, all.count)) {
-            const double z = static_cast<double>(lights[id].z), radius = static_cast<double>(lights[id].radius);
+            const double z = static_cast<double>(lights[id].z),
+                         radius = static_cast<double>(lights[id].radius);
             if (min <= max && radius - z >= min && -radius - z <= max) ids_.push_back(id);
         }
         ranges_.push_back({offset, static_cast<std::uint32_t>(ids_.size()) - offset});

@@ -14,10 +14,8 @@
 void begin_picture(Stage& stage);
 /// Depth alone, of the opaque surfaces.
 void depth_pre_pass(Stage& stage);
-/// Lights opaque surfaces as they are drawn; with three shaders, a program each.
+/// Lights opaque surfaces as they are drawn.
 void shade_forward(Stage& stage, const LightLookup& lights);
-/// Panes before them, from the farthest to the nearest.
-void shade_panes(Stage& stage, const LightLookup& lights);
 
 /// A target of the G-buffer's width.
 GLuint surface_target(Stage& stage, const char* name);
@@ -27,16 +25,11 @@ void read_g_buffer(Stage& stage, GLuint depth);
 /// Lights the G-buffer's pixels, each once.
 void shade_deferred(Stage& stage, const LightLookup& lights);
 
-/// Hands a program of lightbin::reduce_shader() its constants and the depth target that it reads.
-void set_reduction(Stage& stage, GLuint program, GLuint depth);
-
-/// Z bounds from a depth target, in memory of their own.
+/// Z bounds from the depth target, in memory of their own.
 class DepthBounds {
 public:
-    /// By reading the depths back and lightbin::reduce_depth().
-    lightbin::ZBounds reduce_on_cpu(Stage& stage);
-    /// By lightbin::reduce_shader(), of all samples, reading back two depths a tile. `background`: count it in.
-    lightbin::ZBounds reduce_on_gpu(Stage& stage, GLuint depth, bool background = false);
+    /// By lightbin::reduce_shader(), reading back two depths a tile.
+    lightbin::ZBounds reduce(Stage& stage);
 
 private:
     std::vector<float> depth_, min_, max_;

@@ -11,19 +11,6 @@
 
 namespace {
 
-// For transparency; for shaders of objects; for several samples a pixel, as Pettineo has them.
-std::vector<Technique> pane_techniques() {
-    using enum TransparentLists;
-    return {transparent_forward(max_only), transparent_forward(shared), transparent_forward(own_min)};
-}
-std::vector<Technique> material_techniques() {
-    return {tiled_forward_pre_z(ZEnds::both, Reduction::gpu), tiled_deferred(16), tiled_deferred(32)};
-}
-std::vector<Technique> sample_techniques() {
-    return {light_indexed(8), light_indexed(16), tiled_forward_box(), tiled_deferred_kernel(16),
-            tiled_deferred_kernel(32)};
-}
-
 void add(SceneJobs& scene, const std::string& table, const std::vector<Camera>& cameras,
          const std::vector<Technique>& techniques, const Settings& settings = {}) {
     for (const Camera& camera : cameras)
@@ -48,9 +35,7 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
     if (is_path) std::ranges::stable_sort(views, {}, [](const Camera& c) { return frame_of(c.name); });
     const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
     const std::vector<Technique> all = every_technique();
-    SceneJobs own{scene, {}}, few{scene, {}}, panes{with_panes(scene, 60), {}};
-    own.scene.transparent.clear();
-    few.scene.transparent.clear();
+    SceneJobs own{scene, {}}, few{scene, {}};
     if (is_path) {
         add(own, "path", some, all);
         const double first = frame_of(views.front().name), last = frame_of(views.back().name);
@@ -63,11 +48,7 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
         add(own, "from within", some, all);
     }
     add(own, "from above", {camera_from_above(scene, views)}, all);
-    const std::vector<Camera> one = {views[std::min<std::size_t>(1, views.size() - 1)]};
-    add(own, "one shader", one, material_techniques());
-    add(own, "three shaders", one, material_techniques(), {.three_shaders = true});
-    add(panes, "panes", one, pane_techniques(), {.transparent = true});
-    for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
+    for (SceneJobs& jobs : {std::ref(own), std::ref(few)})
         if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
 }
 
@@ -94,13 +75,9 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
     const std::vector<Camera> flight = made_flight(views_of_a_path),
                               still = {made.cameras[0], made.cameras[1]};
     add_scene(plan, made, flight, FewLights::no, quick);
-    made.transparent.clear();
-    for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
+    for (const std::size_t lights : {128u, 1024u}) {
         SceneJobs random{with_random_lights(made, lights), {}};
-        if (lights == 1024) add(random, "random lights", still, every_technique());
-        if (!quick || lights == 128 || lights == 1024)
-            for (const int samples : sample_counts)
-                add(random, "MSAA", {still[0]}, sample_techniques(), {.samples = samples});
+        add(random, "random lights", still, every_technique());
         plan.push_back(std::move(random));
     }
     for (const std::string& file : files)

@@ -19,9 +19,6 @@ struct Job {
     std::vector<Light> lights = {};  ///< in place of the scene's, where there are any
 };
 
-/// The numbers of samples a pixel that are compared.
-constexpr int sample_counts[] = {1, 2, 4, 8, 16};
-
 struct SceneJobs {
     Scene scene;
     std::vector<Job> jobs;

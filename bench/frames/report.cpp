@@ -70,31 +70,6 @@ std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
     return table;
 }
 
-/// A row for each number of lights and samples, a column a technique, as Pettineo has them: milliseconds, million
-/// evaluations, megabytes and the part of the pixels that are not the reference's.
-std::vector<TableRow> by_samples(std::vector<Row> rows) {
-    std::vector<TableRow> table = {{"lights, MSAA"}};
-    const auto techniques = grouped(rows, &Row::technique);
-    for (const auto& [name, its] : techniques)
-        table[0].push_back("| " + name);
-    table.push_back({""});
-    table[1].resize(table[0].size(), "|      ms  million      MB   differs");
-    const auto key = [](const Row& row) { return std::pair(row.lights, row.samples); };
-    std::ranges::sort(rows, {}, key);
-    for (const auto& [number, line] : grouped(rows, key)) {
-        table.push_back({text("%8zu, %4d", number.first, number.second)});
-        for (const auto& [name, its] : techniques) {
-            const auto row = std::ranges::find(line, name, &Row::technique);
-            table.back().push_back(row == line.end() ? "| left out"
-                                   : row->computed
-                                       ? text("| %23.1f  computed", megabytes(*row))
-                                       : text("| %7.1f %8.3f %7.1f %7.2f %%", milliseconds(*row),
-                                              millions(*row), megabytes(*row), percent_different(*row)));
-        }
-    }
-    return table;
-}
-
 // As RFC 4180 has it.
 std::string quoted(const std::string& text) {
     std::string made = "\"";
@@ -109,20 +84,19 @@ void print_rows(const std::vector<Row>& rows) {
     for (const auto& [key, its] :
          grouped(rows, [](const Row& row) { return std::pair(row.scene, row.table); })) {
         std::printf("\n%s: %s\n", key.first.c_str(), key.second.c_str());
-        print_table(key.second == "MSAA" ? by_samples(its) : by_technique(its));
+        print_table(by_technique(its));
     }
 }
 
 void write_csv(const std::vector<Row>& rows) {
     std::FILE* const file =
-        open_report("frames.csv", "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,"
-                                  "bytes,bytes_are,pixels,different_pixels,largest_difference,passes");
+        open_report("frames.csv", "table,scene,view,lights,technique,evaluations,ms,least_ms,most_ms,"
+                                  "bytes,pixels,different_pixels,largest_difference,passes");
     for (const Row& row : rows) {
-        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%s,%zu,%zu,%d,", row.table.c_str(),
+        std::fprintf(file, "%s,%s,%s,%zu,%s,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
-                     row.samples, static_cast<unsigned long long>(row.evaluations), row.frame.median,
-                     row.frame.least, row.frame.most, row.bytes, row.computed ? "computed" : "measured",
-                     row.pixels, row.different, row.difference);
+                     static_cast<unsigned long long>(row.evaluations), row.frame.median, row.frame.least,
+                     row.frame.most, row.bytes, row.pixels, row.different, row.difference);
         for (const auto& [pass, times] : row.passes)
             std::fprintf(file, "%s%s %.3f (%.3f to %.3f)", &pass == &row.passes.front().first ? "" : "; ",
                          pass.c_str(), times.median, times.least, times.most);

@@ -21,35 +21,6 @@ std::string full_name(const Technique& technique) {
 
 }  // namespace
 
-std::vector<Row> with_computed_memory(const std::vector<Row>& rows, std::span<const int> wanted) {
-    std::vector<Row> all = rows;
-    for (const Row& row : rows) {
-        if (row.samples == 1) continue;
-        const auto is_drawn = [&](int samples) {
-            return std::ranges::any_of(all, [&](const Row& r) {
-                return r.samples == samples && r.table == row.table && r.scene == row.scene &&
-                       r.view == row.view && r.lights == row.lights && r.technique == row.technique;
-            });
-        };
-        for (const int samples : wanted) {
-            if (is_drawn(samples)) continue;
-            Row more;
-            more.table = row.table;
-            more.scene = row.scene;
-            more.view = row.view;
-            more.technique = row.technique;
-            more.samples = samples;
-            more.lights = row.lights;
-            more.bytes_a_sample = row.bytes_a_sample;
-            more.bytes = row.bytes + static_cast<std::size_t>(samples) * row.bytes_a_sample -
-                         static_cast<std::size_t>(row.samples) * row.bytes_a_sample;
-            more.computed = true;
-            all.push_back(more);
-        }
-    }
-    return all;
-}
-
 void LeftOut::say(const std::string& who, const std::string& why) {
     const std::string line = who + " is left out: " + why;
     if (std::ranges::find(lines_, line) != lines_.end()) return;
@@ -73,14 +44,11 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
             Row row = draw(technique, camera, wanted, timed_frames);
             if (rows.empty()) reference_ = picture_;
             compare(row);
-            row.as_stated = wanted.samples > 1 || row.difference <= technique.tolerance;
+            row.as_stated = row.difference <= technique.tolerance;
             row.table = table;
             rows.push_back(row);
         } catch (const std::exception& problem) {
-            const std::string samples =
-                wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "";
-            left_out_.say((rows.empty() ? "every technique" : full_name(technique)) + samples,
-                          problem.what());
+            left_out_.say(rows.empty() ? "every technique" : full_name(technique), problem.what());
         }
     };
     try {
@@ -105,7 +73,6 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     row.scene = scene_.name;
     row.view = camera.name;
     row.technique = full_name(technique);
-    row.samples = wanted.samples;
     row.lights = scene_.lights.size();
     const auto draw_once = [&](bool count) {
         wanted.count = count;
@@ -117,7 +84,7 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     const bool can_count = stage_.glsl() >= 430;
     draw_once(can_count);
     if (can_count) row.evaluations = stage_.evaluations();
-    const bool is_first = has_programs_.insert({row.technique, wanted.samples, wanted.three_shaders}).second;
+    const bool is_first = has_programs_.insert(row.technique).second;
     if (can_count && timed_frames > 0 && is_first) draw_once(false);
     std::vector<std::vector<Pass>> frames;
     for (int i = 0; i < timed_frames; ++i)
@@ -125,8 +92,6 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     picture_ = stage_.read_picture();
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();
-    row.bytes_a_sample = stage_.memory.multisampled_bytes() / static_cast<std::size_t>(row.samples);
-
     if (frames.empty()) return row;
 
     std::vector<double> sums(frames.size());

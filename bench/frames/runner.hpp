@@ -9,9 +9,7 @@
 
 #include <cstdint>
 #include <set>
-#include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,23 +21,16 @@ struct Times {
 /// What was measured of one technique in one view.
 struct Row {
     std::string table, scene, view, technique;  ///< a technique's name has the bits of its G-buffer
-    int samples = 1;
     std::size_t lights = 0;
     std::uint64_t evaluations = 0;  ///< 0: this OpenGL can't count
     Times frame;
     std::vector<std::pair<std::string, Times>> passes;
     std::size_t bytes = 0;
-    std::size_t bytes_a_sample = 0;  ///< of them, where a pixel has several
-    bool computed = false;           ///< the bytes are, and nothing was drawn
     std::size_t pixels = 0;
     std::size_t different = 0;  ///< pixels that are not the reference's
     int difference = 0;         ///< the largest of a colour, of 255
     bool as_stated = true;      ///< it is no larger than the technique's tolerance
 };
-
-/// Returns the rows and, of each technique that drew several samples a pixel, one for each of these numbers of samples that
-/// this OpenGL has not: the bytes that it would take. The lists' bytes are those of the samples that were drawn.
-std::vector<Row> with_computed_memory(const std::vector<Row>& rows, std::span<const int> wanted);
 
 /// What the run asks of all frames.
 struct RunSettings {
@@ -78,6 +69,6 @@ private:
     Renderer meter_;
     LeftOut& left_out_;
     Technique every_light_;
-    std::set<std::tuple<std::string, int, bool>> has_programs_;  // techniques, samples, three shaders
+    std::set<std::string> has_programs_;
     std::vector<std::uint8_t> reference_, picture_;
 };

@@ -7,7 +7,7 @@
 
 namespace {
 
-// Of every shader. MATERIAL(s) is the material of a surface: a constant where a shader has but one.
+// Of every shader.
 const char* const common = R"(
 layout(std140) uniform Frame {
     mat4 to_view;
@@ -22,7 +22,6 @@ struct Surface {
     vec3 position, normal;  // in view space
     vec3 diffuse, specular, ambient;
     float shininess;
-    int material;
 };
 
 // From a pixel's centre and its depth, the very numbers that tiles and Z bounds are made of.
@@ -46,17 +45,12 @@ uniform samplerBuffer lights;  // two texels each: centre and range, intensity
 
 uint evaluations = 0u;
 
-// Diffuse and specular; paint of two colours; a rim of light.
+// Diffuse and specular.
 vec3 reflected(Surface s, vec3 to_light, vec3 to_eye) {
     float facing = max(dot(s.normal, to_light), 0.0);
     vec3 between = to_light + to_eye;
     float highlight = max(dot(s.normal, between * inversesqrt(max(dot(between, between), 1e-12))), 0.0);
-    vec3 diffuse = s.diffuse;
-    float seen = clamp(dot(s.normal, to_eye), 0.0, 1.0);
-    if (MATERIAL(s) == 1) diffuse = mix(s.diffuse.brg, s.diffuse, seen * seen);
-    vec3 sent = (diffuse / 3.14159265 + s.specular * pow(highlight, s.shininess)) * facing;
-    if (MATERIAL(s) == 2) sent += s.diffuse * (0.3 * pow(1.0 - seen, 4.0));
-    return sent;
+    return (s.diffuse / 3.14159265 + s.specular * pow(highlight, s.shininess)) * facing;
 }
 
 // What a light makes a surface send to the eye: inverse-square falloff, windowed to zero at the range.
@@ -97,88 +91,46 @@ void count() {}
 const char* const made_surface = R"(
 in vec3 surface_normal;
 in vec3 base_colour;
-flat in float surface_material;
-#if SAMPLES > 1
-// At the pixel's centre, which gl_FragCoord is of, the triangle may be deeper or nearer than any sample of it.
-centroid in vec3 surface_position;
-#endif
 
 Surface made_surface() {
     Surface s;
-#if SAMPLES > 1
-    s.position = surface_position;
-#else
     s.position = view_position(gl_FragCoord.xy, gl_FragCoord.z);
-#endif
     s.normal = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
     s.diffuse = base_colour;
     s.specular = vec3(0.15);
     s.ambient = 0.02 * base_colour;
     s.shininess = 24.0;
-    s.material = int(surface_material);
     return s;
 }
 )";
 
 const char* const stored_surface = R"(
-#if SAMPLES > 1
-#define TEXTURE sampler2DMS
-#else
-#define TEXTURE sampler2D
-#endif
-uniform TEXTURE depth_texture, diffuse_texture, specular_texture, ambient_texture, normal_texture;
+uniform sampler2D depth_texture, diffuse_texture, specular_texture, ambient_texture, normal_texture;
 
-// `i`: the sample. Where nothing is drawn, the depth is 1.
-float stored_depth(ivec2 pixel, int i) {
-    return texelFetch(depth_texture, pixel, i).x;
+// Where nothing is drawn, the depth is 1.
+float stored_depth(ivec2 pixel) {
+    return texelFetch(depth_texture, pixel, 0).x;
 }
 
-// `place`: in the pixel
-Surface stored_surface(ivec2 pixel, int i, vec2 place, float depth) {
-    vec4 diffuse = texelFetch(diffuse_texture, pixel, i), specular = texelFetch(specular_texture, pixel, i);
+Surface stored_surface(ivec2 pixel, float depth) {
+    vec4 specular = texelFetch(specular_texture, pixel, 0);
     Surface s;
-    s.position = view_position(vec2(pixel) + place, depth);
-    s.normal = normalize(texelFetch(normal_texture, pixel, i).xyz);
-    s.diffuse = diffuse.rgb;
+    s.position = view_position(vec2(pixel) + 0.5, depth);
+    s.normal = normalize(texelFetch(normal_texture, pixel, 0).xyz);
+    s.diffuse = texelFetch(diffuse_texture, pixel, 0).rgb;
     s.specular = specular.rgb;
-    s.ambient = texelFetch(ambient_texture, pixel, i).rgb;
+    s.ambient = texelFetch(ambient_texture, pixel, 0).rgb;
     s.shininess = specular.a;
-    s.material = int(diffuse.a);
     return s;
 }
 )";
 
 const char* const lit_pixel = R"(
-vec3 lit_sample(ivec2 pixel, int i, vec2 place, float depth) {
+vec3 lit_pixel(ivec2 pixel) {
+    float depth = stored_depth(pixel);
     if (depth == 1.0) return sky;
-    return shown(lit(stored_surface(pixel, i, place, depth), uvec2(pixel)));
+    return shown(lit(stored_surface(pixel, depth), uvec2(pixel)));
 }
-
-#if SAMPLES > 1
-// The middle is lit for all samples that are of one surface, as forward does. Where normals or depths tell that they are
-// not, each is lit by itself.
-vec3 lit_pixel(ivec2 pixel) {
-    float first = stored_depth(pixel, 0), z = view_position(vec2(pixel), first).z, sum = first;
-    vec3 normal = texelFetch(normal_texture, pixel, 0).xyz;
-    bool same = true;
-    for (int i = 1; i < SAMPLES; ++i) {
-        float depth = stored_depth(pixel, i);
-        sum += depth;
-        same = same && (depth == 1.0) == (first == 1.0) &&
-               abs(view_position(vec2(pixel), depth).z - z) <= 0.01 * abs(z) &&
-               dot(texelFetch(normal_texture, pixel, i).xyz, normal) > 0.99;
-    }
-    if (same) return lit_sample(pixel, 0, vec2(0.5), sum / float(SAMPLES));
-    vec3 light = vec3(0.0);
-    for (int i = 0; i < SAMPLES; ++i)
-        light += lit_sample(pixel, i, sample_places[i], stored_depth(pixel, i));
-    return light / float(SAMPLES);
-}
-#else
-vec3 lit_pixel(ivec2 pixel) {
-    return lit_sample(pixel, 0, vec2(0.5), stored_depth(pixel, 0));
-}
-#endif
 )";
 
 }  // namespace
@@ -198,8 +150,7 @@ LightLookup listed_lights(const lightbin::ShaderOptions& options) {
 }
 
 std::string Shaders::head() const {
-    return "#version " + std::to_string(glsl_) + " core\n" + "#define SAMPLES " +
-           std::to_string(settings_.samples) + "\n" + (settings_.count ? "#define COUNT\n" : "");
+    return "#version " + std::to_string(glsl_) + " core\n" + (settings_.count ? "#define COUNT\n" : "");
 }
 
 namespace {
@@ -211,9 +162,8 @@ layout(early_fragment_tests) in;
 #endif
 )";
 
-std::string lit_text(const LightLookup& lights, const std::string& material) {
-    return "#define MATERIAL(s) " + material + "\n#define LIGHT_ID " + lights.id + "\n" + common +
-           lights.text + lighting + counter;
+std::string lit_text(const LightLookup& lights) {
+    return "#define LIGHT_ID " + lights.id + "\n" + common + lights.text + lighting + counter;
 }
 
 }  // namespace
@@ -223,23 +173,14 @@ std::string Shaders::surface_vertex() const {
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 colour;
-layout(location = 3) in float material;
 out vec3 surface_normal;
 out vec3 base_colour;
-flat out float surface_material;
-#if SAMPLES > 1
-centroid out vec3 surface_position;
-#endif
 invariant gl_Position;  // the same bits in every pass
 
 void main() {
     vec4 place = to_view * vec4(position, 1.0);
     surface_normal = mat3(to_view) * normal;
     base_colour = colour;
-    surface_material = material;
-#if SAMPLES > 1
-    surface_position = place.xyz;
-#endif
     gl_Position = projection * place;
 }
 )";
@@ -257,11 +198,10 @@ std::string Shaders::depth_fragment() const {
     return head() + "void main() {}\n";
 }
 
-std::string Shaders::forward_fragment(const LightLookup& lights, int material, float alpha) const {
-    return head() + seen_only + lit_text(lights, std::to_string(material)) + lit_by_list + made_surface +
+std::string Shaders::forward_fragment(const LightLookup& lights) const {
+    return head() + seen_only + lit_text(lights) + lit_by_list + made_surface +
            "out vec4 pixel;\n\nvoid main() {\n"
-           "    pixel = vec4(shown(lit(made_surface(), uvec2(gl_FragCoord.xy))), " +
-           std::to_string(alpha) + ");\n    count();\n}\n";
+           "    pixel = vec4(shown(lit(made_surface(), uvec2(gl_FragCoord.xy))), 1.0);\n    count();\n}\n";
 }
 
 std::string Shaders::g_buffer_fragment() const {
@@ -273,7 +213,7 @@ layout(location = 3) out vec4 normal;
 
 void main() {
     Surface s = made_surface();
-    diffuse = vec4(s.diffuse, float(s.material));
+    diffuse = vec4(s.diffuse, 0.0);
     specular = vec4(s.specular, s.shininess);
     ambient = vec4(s.ambient, 0.0);
     normal = vec4(s.normal, 0.0);
@@ -282,14 +222,7 @@ void main() {
 }
 
 std::string Shaders::deferred_functions(const LightLookup& lights) const {
-    const std::string count = std::to_string(sample_places_.size());
-    std::string places;
-    for (const glm::vec2& place : sample_places_)
-        places += (places.empty() ? "vec2(" : ", vec2(") + std::to_string(place.x) + ", " +
-                  std::to_string(place.y) + ")";
-    return "const vec2 sample_places[" + count + "] = vec2[" + count + "](" + places + ");\n" +
-           lit_text(lights, settings_.three_shaders ? "(s).material" : "0") + lit_by_list + stored_surface +
-           lit_pixel;
+    return lit_text(lights) + lit_by_list + stored_surface + lit_pixel;
 }
 
 std::string Shaders::deferred_fragment(const LightLookup& lights) const {
@@ -314,15 +247,15 @@ void main() {
 }
 
 std::string Shaders::one_light_fragment() const {
-    return head() + seen_only + lit_text({}, "0") + stored_surface + R"(
+    return head() + seen_only + lit_text({}) + stored_surface + R"(
 flat in int light;
 out vec4 radiance;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float depth = stored_depth(pixel, 0);
+    float depth = stored_depth(pixel);
     radiance = vec4(0.0);
-    if (depth != 1.0) radiance = vec4(from_light(stored_surface(pixel, 0, vec2(0.5), depth), light), 0.0);
+    if (depth != 1.0) radiance = vec4(from_light(stored_surface(pixel, depth), light), 0.0);
     count();
 }
 )";

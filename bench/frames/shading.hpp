@@ -6,10 +6,7 @@
 
 #include <lightbin/shader.hpp>
 
-#include <glm/glm.hpp>
-
 #include <string>
-#include <vector>
 
 /// How a technique's shaders find the lights of a surface.
 struct LightLookup {
@@ -23,20 +20,18 @@ LightLookup listed_lights(const lightbin::ShaderOptions& options = {});
 /// Writes the texts for one version of GLSL and one kind of frame.
 class Shaders {
 public:
-    /// sample_places  of a pixel's samples, in 0..1
-    Shaders(int glsl, const Settings& settings, const std::vector<glm::vec2>& sample_places)
-        : glsl_(glsl), settings_(settings), sample_places_(sample_places) {}
+    Shaders(int glsl, const Settings& settings) : glsl_(glsl), settings_(settings) {}
 
     std::string surface_vertex() const;     ///< of triangles in world space
     std::string everywhere_vertex() const;  ///< of a triangle over the picture
     std::string depth_fragment() const;
 
-    /// Lights what it draws. `material`: one of three, or 0 where all are the same; `alpha` below 1: of glass.
-    std::string forward_fragment(const LightLookup& lights, int material = 0, float alpha = 1) const;
+    /// Lights what it draws.
+    std::string forward_fragment(const LightLookup& lights) const;
 
     /// Writes surfaces to the G-buffer.
     std::string g_buffer_fragment() const;
-    /// Lights a pixel of the G-buffer, whatever the number of samples.
+    /// Lights a pixel of the G-buffer.
     std::string deferred_fragment(const LightLookup& lights) const;
     /// The same of a compute shader: declares vec3 lit_pixel(ivec2 pixel).
     std::string deferred_functions(const LightLookup& lights) const;
@@ -54,5 +49,4 @@ public:
 private:
     int glsl_;
     Settings settings_;
-    std::vector<glm::vec2> sample_places_;
 };

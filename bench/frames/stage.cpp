@@ -20,21 +20,11 @@ struct FrameConstants {
     std::int32_t light_count, unused = 0;
 };
 
-// Where in a pixel of the bound targets its samples lie.
-std::vector<glm::vec2> find_sample_places(int samples) {
-    std::vector<glm::vec2> places(static_cast<std::size_t>(samples));
-    for (int i = 0; i < samples; ++i)
-        glGetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i),
-                           &places[static_cast<std::size_t>(i)].x);
-    return places;
-}
-
 }  // namespace
 
 bool is_software_renderer() {
     const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    return renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos ||
-           renderer.find("SWR") != std::string::npos;
+    return renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
 }
 
 Stage::Stage(const Scene& scene, int glsl)
@@ -58,7 +48,6 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
     settings_ = settings;
     const glm::dmat4 to_view = glm::inverse(camera.to_world);
     projection_ = projection_of(camera, static_cast<double>(settings.width) / settings.height);
-    geometry.sort_panes(glm::mat4(to_view));
 
     struct Lit {
         lightbin::Sphere sphere;
@@ -90,11 +79,6 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
         const std::uint32_t zero[2] = {};
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, counter_);
         glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, zero, GL_DYNAMIC_READ);
-    }
-    sample_places_ = {glm::vec2(0.5f)};
-    if (settings.samples > 1) {
-        memory.draw_to({}, depth());  // which all need
-        sample_places_ = find_sample_places(settings.samples);
     }
     glViewport(0, 0, settings.width, settings.height);
     reset_state();
@@ -151,7 +135,7 @@ lightbin::View Stage::view(int tile_size) const {
 }
 
 std::vector<LightFootprint> Stage::footprints(int tile_size) const {
-    lightbin::Footprints<false> projected;
+    lightbin::Footprints projected;
     projected.project(lightbin::machine_isa(), view(tile_size), lightbin::detail::as_lights(spheres_),
                       lightbin::Parallel{});
     const lightbin::detail::FootprintArrays& of = projected.arrays();
@@ -191,28 +175,13 @@ GLuint Stage::use_compute(const std::string& text) {
 }
 
 GLuint Stage::target(const char* name, GLenum format) {
-    return memory.target(name, format, settings_.width, settings_.height, settings_.samples);
-}
-
-GLuint Stage::shown() {
-    if (settings_.samples == 1) return drawn();
-    return memory.target("picture of one sample", GL_RGBA8, settings_.width, settings_.height, 1);
-}
-
-void Stage::resolve() {
-    if (settings_.samples == 1) return;
-    const GLuint from = memory.framebuffer({drawn()}, 0), to = memory.framebuffer({shown()}, 0);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
-    glBlitFramebuffer(0, 0, settings_.width, settings_.height, 0, 0, settings_.width, settings_.height,
-                      GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    lap("resolve");
+    return memory.target(name, format, settings_.width, settings_.height);
 }
 
 std::vector<std::uint8_t> Stage::read_picture() {
     std::vector<std::uint8_t> rgba(4 * static_cast<std::size_t>(settings_.width) *
                                    static_cast<std::size_t>(settings_.height));
-    memory.draw_to({shown()}, 0);
+    memory.draw_to({drawn()}, 0);
     glReadPixels(0, 0, settings_.width, settings_.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     return rgba;
 }

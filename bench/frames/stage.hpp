@@ -60,7 +60,7 @@ public:
 
     int glsl() const { return glsl_; }
     const Settings& settings() const { return settings_; }
-    Shaders shaders() const { return {glsl_, settings_, sample_places_}; }
+    Shaders shaders() const { return {glsl_, settings_}; }
     lightbin::View view(int tile_size = 0) const;  ///< 0: that of the settings
     /// In view space, in the order in which they begin in depth: so ids and ranks in depth ascend together.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
@@ -73,12 +73,10 @@ public:
     GLuint use(const std::string& vertex, const std::string& fragment);
     GLuint use_compute(const std::string& text);
 
-    /// Targets of the frame's size: what forward passes draw to, of the settings' samples; what is shown.
+    /// Targets of the frame's size.
     GLuint target(const char* name, GLenum format);
     GLuint drawn() { return target("picture", GL_RGBA8); }
     GLuint depth() { return target("depth", GL_DEPTH_COMPONENT32F); }
-    GLuint shown();
-    void resolve();  ///< drawn() to shown()
     std::vector<std::uint8_t> read_picture();
 
 private:
@@ -94,7 +92,6 @@ private:
     glm::mat4 projection_{1};
     std::vector<lightbin::Sphere> spheres_;
     std::vector<glm::vec4> gpu_lights_;  // two a light: centre and range, intensity
-    std::vector<glm::vec2> sample_places_;
     std::vector<std::string> laps_;
     std::vector<GLuint> clocks_;
 };

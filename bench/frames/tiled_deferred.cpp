@@ -16,7 +16,7 @@ Technique tiled_deferred(int g_buffer_bits) {
             .draw =
                 [memory](Stage& stage) {
                     fill_g_buffer(stage, stage.depth());
-                    const auto bounds = memory->bounds.reduce_on_gpu(stage, stage.depth());
+                    const auto bounds = memory->bounds.reduce(stage);
                     const auto grid = memory->lists.bin(stage, bounds);
                     stage.lap("bin");
                     upload_lists(stage, grid);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // TiledFwd (Tiled Shading, section 6.1): each fragment as it comes, with the list of its tile.
-#include "gpu_lists.hpp"
 #include "passes.hpp"
 #include "technique.hpp"
 
@@ -14,19 +13,5 @@ Technique tiled_forward() {
                 upload_lists(stage, grid);
                 begin_picture(stage);
                 shade_forward(stage, listed_lights());
-                stage.resolve();
             }};
-}
-
-Technique tiled_forward_gpu() {
-    const auto lists = std::make_shared<GpuLists>(lightbin::CullShaderOptions{});
-    return {.name = "TiledForward by passes",
-            .draw =
-                [lists](Stage& stage) {
-                    lists->build(stage);
-                    begin_picture(stage);
-                    shade_forward(stage, listed_lights());
-                    stage.resolve();
-                },
-            .glsl = 430};
 }

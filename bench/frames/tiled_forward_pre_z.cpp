@@ -15,8 +15,7 @@ struct BoxLists {
     lightbin::Binner<lightbin::Options{.depth_test = true}> binner;
 };
 
-template <class Lists>
-Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
+template <class Lists> Technique pre_z(const std::string& name, ZEnds ends) {
     struct Memory {
         DepthBounds bounds;
         Lists lists;
@@ -26,30 +25,23 @@ Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
                 begin_picture(stage);
                 depth_pre_pass(stage);
                 lightbin::ZBounds bounds;
-                if (ends != ZEnds::none)
-                    bounds = reduction == Reduction::gpu ? memory->bounds.reduce_on_gpu(stage, stage.depth())
-                                                         : memory->bounds.reduce_on_cpu(stage);
+                if (ends != ZEnds::none) bounds = memory->bounds.reduce(stage);
                 if (ends == ZEnds::min) bounds.max = {};
                 if (ends == ZEnds::max) bounds.min = {};
                 const auto grid = memory->lists.bin(stage, bounds);
                 stage.lap("bin");
                 upload_lists(stage, grid);
                 shade_forward(stage, listed_lights());
-                stage.resolve();
             }};
 }
 
 }  // namespace
 
-Technique tiled_forward_pre_z(ZEnds ends, Reduction reduction) {
+Technique tiled_forward_pre_z(ZEnds ends) {
     static constexpr const char* names[] = {"", " min", " max", " both"};
-    Technique made = pre_z<IntervalLists>(std::string("TiledForward-PreZ") + names[static_cast<int>(ends)] +
-                                              (reduction == Reduction::gpu ? " (GPU)" : ""),
-                                          ends, reduction);
-    made.multisampled = ends == ZEnds::none || reduction == Reduction::gpu;
-    return made;
+    return pre_z<IntervalLists>(std::string("TiledForward-PreZ") + names[static_cast<int>(ends)], ends);
 }
 
 Technique tiled_forward_box() {
-    return pre_z<BoxLists>("TiledForward-PreZ box (GPU)", ZEnds::both, Reduction::gpu);
+    return pre_z<BoxLists>("TiledForward-PreZ box", ZEnds::both);
 }

@@ -18,6 +18,5 @@ Technique z_binned_forward() {
                 upload_lists(stage, grid);
                 begin_picture(stage);
                 shade_forward(stage, listed_lights({.slicing = Slicing::z_bins}));
-                stage.resolve();
             }};
 }

@@ -20,6 +20,7 @@ struct Difference {
     std::size_t more = 0;       ///< entries of the GPU alone
     std::size_t unordered = 0;  ///< ids of the GPU not above the one before, and lists that don't join
 
+    bool right() const { return missed == 0 && unordered == 0; }
     Difference& operator+=(const Difference& other) {
         entries += other.entries, missed += other.missed, more += other.more, unordered += other.unordered;
         return *this;

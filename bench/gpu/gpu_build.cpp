@@ -52,7 +52,6 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     : device_(device),
       view_(first.lens.view(tile_size)), room_{static_cast<std::uint32_t>(first.lights.size()), entries} {
     if (slices) slices_ = *slices;
-    options_.language = device.language();
     options_.world_space = first.to_view.has_value();
     options_.depth_test = options.depth_test;
     options_.slicing = options.slicing;
@@ -77,19 +76,14 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     make("lists", plan_.bytes.lists);
     fill("lights", bytes_of(first.lights));
     fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
-    if (options.depth_test)
-        fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
+    if (options.depth_test) fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
 }
 
 double GpuBuild::upload(const GpuFrame& frame) {
     plan_ = plan_of(frame, view_, options_, room_, slices_);
     const auto constants = bytes_of(std::span(&plan_.constants, 1));
-    double milliseconds = device_.write("grid", constants);
-    uploaded_ = constants.size();
-    if (frame.to_view) return milliseconds;
-    milliseconds += device_.write("lights", bytes_of(frame.lights));
-    uploaded_ += bytes_of(frame.lights).size();
-    return milliseconds;
+    const double milliseconds = device_.write("grid", constants);
+    return frame.to_view ? milliseconds : milliseconds + device_.write("lights", bytes_of(frame.lights));
 }
 
 ReadLists GpuBuild::read() {

@@ -31,7 +31,6 @@ public:
 
     /// Writes what changes from frame to frame: constants, and lights in view space. Returns milliseconds.
     double upload(const GpuFrame& frame);
-    std::size_t uploaded_bytes() const { return uploaded_; }
     /// See GpuDevice::run().
     std::vector<double> run(bool each_pass) { return device_.run(each_pass); }
     ReadLists read();
@@ -45,5 +44,4 @@ private:
     lightbin::CullRoom room_;
     std::optional<lightbin::Slices> slices_;
     lightbin::CullPlan plan_;
-    std::size_t uploaded_ = 0;
 };

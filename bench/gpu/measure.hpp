@@ -2,7 +2,6 @@
 // Builds on the CPU and on the GPU in turns.
 #pragma once
 
-#include "brute_force.hpp"
 #include "compare.hpp"
 #include "device.hpp"
 #include "frames.hpp"
@@ -27,12 +26,9 @@ struct GpuRow {
     double cpu_ms = 0, cpu_upload_ms = 0;  ///< medians, as all times; one core
     double gpu_ms = 0, gpu_upload_ms = 0;
     std::vector<std::pair<std::string, double>> passes;  ///< milliseconds of each pass of the GPU
-    std::size_t cpu_bytes = 0, gpu_bytes = 0;            ///< that the CPU sends in a frame
     std::size_t scratch = 0;                             ///< bytes
     double tests = 0;  ///< of a light against a cell on the GPU, in count and fill together
     Difference difference;
-    double brute_ms = 0, brute_tests = 0;  ///< of BruteForce; 0 where it was not run
-    std::size_t brute_wrong = 0;           ///< entries that BruteForce has too many, too few or out of order
 };
 
 /// How many turns are timed, and how many are made before them: a GPU that was idle takes its time to get fast.
@@ -69,7 +65,6 @@ public:
                    ? *binner_.bin(view, lightbin::world_space(frame.lights, *frame.to_view), inputs_)
                    : *binner_.bin(view, frame.lights, inputs_);
     }
-    const lightbin::Binner<options>& binner() const { return binner_; }
 
 private:
     lightbin::Inputs<options.depth_test, options.slicing> inputs_;
@@ -82,30 +77,10 @@ inline std::vector<lightbin::LightCoverage> coverage_of(const GpuFrame& frame, c
                          : *lightbin::coverage(view, frame.lights);
 }
 
-/// Lists the plain tiles of `turns` frames by BruteForce, and compares each list.
-inline void measure_brute_force(GpuDevice& device, const LightSource& source, const lightbin::View& view,
-                                std::size_t room, const TurnsOf& turns, GpuRow& row) {
-    CpuBuild<lightbin::Options{}> cpu(cluster_slices(), {});
-    BruteForce brute(device, view, row.lights, std::uint32_t(room));
-    std::vector<double> runs;
-    for (int turn = 0; turn < turns.timed; ++turn) {
-        const GpuFrame& frame = source.frames[std::size_t(turn) % source.frames.size()];
-        const auto grid = cpu(frame, view);
-        brute.upload(coverage_of(frame, view));
-        runs.push_back(brute.run());
-        const Difference d = compare(brute.read(), grid.ranges(), grid.ids());
-        row.brute_wrong += d.missed + d.more + d.unordered;
-    }
-    row.brute_ms = median(runs);
-    row.brute_tests = 2 * double(view.tile_count()) * double(row.in_view);
-}
-
-/// brute_force  whether to run BruteForce, too; only for options without depth test and slices
-///
 /// Throws std::runtime_error with one line where the device can't do it.
 template <lightbin::Options options>
 GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, const TurnsOf& turns,
-               const lightbin::Slices& slices, const lightbin::ZBounds& bounds, bool brute_force) {
+               const lightbin::Slices& slices, const lightbin::ZBounds& bounds) {
     constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
     const GpuFrame& first = source.frames.front();
     const lightbin::View view = first.lens.view(tile_size);
@@ -120,15 +95,14 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     for (const GpuFrame& frame : source.frames)
         longest = std::max<std::size_t>(longest, cpu(frame, view).ids().size());
     const std::size_t room = longest + longest / 8 + 1024;
-    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr, bounds);
+    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr,
+                 bounds);
     row.scratch = std::size_t(gpu.plan().bytes.scratch);
     device.make_buffer("sent ranges", gpu.plan().bytes.tiles);
     device.make_buffer("sent ids", 4 * room);
     const auto send = [&](const auto& grid) {
-        row.cpu_bytes = 0;
         const auto write = [&](const char* name, const auto& values) {
             const auto bytes = std::as_bytes(std::span(values));
-            row.cpu_bytes += bytes.size();
             return bytes.empty() ? 0 : device.write(name, bytes);
         };
         return write("sent ranges", grid.ranges()) + write("sent ids", grid.ids());
@@ -164,9 +138,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     }
     row.cpu_ms = median(builds), row.cpu_upload_ms = median(sends);
     row.gpu_ms = median(runs), row.gpu_upload_ms = median(uploads);
-    row.gpu_bytes = gpu.uploaded_bytes();
     for (std::size_t i = 0; i < passes.size(); ++i)
         row.passes.emplace_back(to_string(lightbin::cull_passes[i]), median(passes[i]));
-    if (brute_force) measure_brute_force(device, source, view, room, turns, row);
     return row;
 }

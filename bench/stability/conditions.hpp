@@ -19,7 +19,6 @@ using oracle::Aim, oracle::Camera, oracle::Lens, oracle::Light, oracle::Matrix, 
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::vector<Light> cones;     ///< of spots: axis, and as w the cosine of the half angle
     std::optional<Matrix> world;  ///< the view matrix, where lights are in world space
 };
 
@@ -46,7 +45,6 @@ struct Family {
     Scene (*make)(Random&, double value, std::size_t lights) = nullptr;
     DepthScene (*make_depths)(Random&, double value, std::size_t lights) = nullptr;
     bool flush = false;  ///< FTZ and DAZ are set
-    bool spots = false;
 };
 
 inline std::string short_text(double value) {
@@ -86,7 +84,7 @@ inline Lens lens_from(double near_plane, Random& random) {
     return lens;
 }
 inline Scene scene_of(const Lens& lens, const oracle::Screen& screen = full_hd) {
-    return {oracle::camera_of("", lens, screen), {}, {}, {}};
+    return {oracle::camera_of("", lens, screen), {}, {}};
 }
 
 // The lights.
@@ -240,6 +238,23 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
     return scene;
 }
 
+/// A light a few pixels wide, tangent to the edge of a one-pixel tile.
+inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
+    const double d = aim.depth(random), at = std::max(d, aim.unit);
+    // The radius whose image is a pixel: far off the axis an image is longer.
+    double pixel = oracle::infinite, c[2], edge[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        edge[axis] = aim.tile_edge(axis, random);
+        c[axis] = aim.at(axis, edge[axis], at);
+        pixel = std::min(pixel, (aim.at(axis, edge[axis] + 1, at) - c[axis]) /
+                                    std::hypot(1, aim.slope(axis, edge[axis])));
+    }
+    const int axis = random.integer(0, 1);
+    const double r = std::min(pixel * random.power_of_two(-8, std::log2(most_pixels)), at / 4);
+    c[axis] += random.sign() * r * std::hypot(1, aim.slope(axis, edge[axis]));
+    return nudged(aim.light(c[0], c[1], at, r), random);
+}
+
 inline Scene tile_count(Random& random, double tiles, std::size_t lights) {
     const int side = static_cast<int>(tiles), other = std::min(side, 16);
     const bool wide = random.chance(0.5);
@@ -248,27 +263,7 @@ inline Scene tile_count(Random& random, double tiles, std::size_t lights) {
     Scene scene = scene_of(lens, {wide ? side : other, wide ? other : side, 1, false});
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < lights; ++i)
-        scene.lights.push_back(oracle::families::pixel_light(aim, random, 8));
-    return scene;
-}
-
-inline Scene cone_angle(Random& random, double degrees, std::size_t lights) {
-    Scene scene = scene_of(lens_of(), {1920, 1080, 1, false});
-    const Aim aim(scene.camera);
-    // Near 90 degrees the cosine is taken from the angle's distance to that.
-    const double radians = std::acos(-1.0) / 180,
-                 cosine = degrees > 45 ? std::sin((90 - degrees) * radians) : std::cos(degrees * radians);
-    for (std::size_t i = 0; i < lights; ++i) {
-        const double d = random.power_of_two(0, 7.5), r = aim.half_height(d) * random.power_of_two(-4, 0);
-        scene.lights.push_back(
-            aim.light(aim.at(0, aim.pixel(0, random, 0), d), aim.at(1, aim.pixel(1, random, 0), d), d, r));
-        double axis[3], length = 0;
-        for (double& part : axis)
-            part = random.normal(), length += part * part;
-        length = std::sqrt(length);
-        scene.cones.push_back({static_cast<float>(axis[0] / length), static_cast<float>(axis[1] / length),
-                               static_cast<float>(axis[2] / length), static_cast<float>(cosine)});
-    }
+        scene.lights.push_back(pixel_light(aim, random, 8));
     return scene;
 }
 
@@ -312,14 +307,8 @@ inline DepthScene slices_apart(Random& random, double ulps, std::size_t lights) 
 }
 
 inline std::vector<Family> all_families() {
-    const double smallest = 0x1p-24;
     std::vector<Condition> infinite_too = decades(1, 12);
     infinite_too.push_back({"inf", oracle::infinite});
-    std::vector<Condition> angles =
-        values({smallest, 0x1p-16, 0x1p-8, 1, 10, 45, 80, 89, 90 - 0x1p-8, 90 - 0x1p-16});
-    angles.front().label = "2^-24", angles[1].label = "2^-16", angles[2].label = "2^-8";
-    angles[8].label = "90-2^-8", angles[9].label = "90-2^-16";
-    angles.push_back({"90-2^-24", 90 - smallest});
     const std::vector<Condition> small = decades(-38, -45, -1);
     return {
         {"ordinary",
@@ -374,13 +363,6 @@ inline std::vector<Family> all_families() {
          "Lights of a few pixels in pictures of one-pixel tiles.",
          "A float has 24 bits, a pixel's number takes 15 of them.", values({1, 8, 64, 512, 4096, 32768}),
          tile_count},
-        {"cones", "half angles of spots", "degrees",
-         "Spots from 2^-24 degrees, where the cosine is 1 and the spot a ray, to 2^-24 short of 90. Tiles "
-         "are pixels. There are no textbook formulas of a spot's own bounds: theirs are of a sphere or a "
-         "box around it.",
-         "The sine of a small angle is all cancelled in a cosine; close to 90 degrees a cone's box grows "
-         "without end.",
-         angles, cone_angle, nullptr, false, true},
         {"denormals", "denormal radii", "radius",
          "A scene at the bottom of the number line: near plane at 2e-38, radii from 1e-38 to 1e-45.",
          "A denormal float has fewer digits the smaller it is, and the square of every number here is 0.",

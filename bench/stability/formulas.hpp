@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The textbooks' formulas, as they are printed, in the precision of `Real`: the bounds of spheres in slopes along one image
-// axis, of spots by what lies around them, and the slice of a depth.
+// axis, and the slice of a depth.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -56,39 +55,6 @@ struct LengyelLauritzen {
         };
         const Real a = bound(-1), b = bound(1);
         return {std::min(a, b), std::max(a, b)};
-    }
-};
-
-/// A spot in the camera's axes: apex, range, unit axis, cosine of the half angle.
-template <class Real> struct SpotOf { Real c[3], r, axis[3], cosine; };
-
-/// The least sphere around it, as Wronski has it ("Cull that cone! Improved cone/spotlight visibility tests for tiled and
-/// clustered lighting", 2017), then Mara and McGuire.
-struct LeastSphere {
-    static constexpr const char* name = "least sphere";
-    template <class Real> static Slopes<Real> slopes(const SpotOf<Real>& spot, int i, Real n) {
-        const bool wide = spot.cosine < std::sqrt(Real(0.5));
-        const Real along = wide ? spot.r * spot.cosine : spot.r / (2 * spot.cosine),
-                   radius = wide ? spot.r * std::sqrt(1 - spot.cosine * spot.cosine) : along;
-        return MaraMcGuire::slopes(spot.c[i] + along * spot.axis[i], spot.c[2] + along * spot.axis[2], radius,
-                                   n);
-    }
-};
-
-/// The box along the axes of view space around the cone of the same side with a flat end (Quilez, "Disk bounding
-/// box", iquilezles.org), and the slopes of its corners. The flat end has the cap's depth, so that the cap is within.
-struct ConeBox {
-    static constexpr const char* name = "cone box";
-    template <class Real> static Slopes<Real> slopes(const SpotOf<Real>& spot, int i, Real) {
-        const Real rim = spot.r * std::sqrt(1 - spot.cosine * spot.cosine) / spot.cosine;
-        const auto end = [&](int axis, Real sign) {
-            const Real reach = rim * std::sqrt(1 - spot.axis[axis] * spot.axis[axis]);
-            const Real flat = spot.c[axis] + spot.r * spot.axis[axis] + sign * reach;
-            return sign < 0 ? std::min(spot.c[axis], flat) : std::max(spot.c[axis], flat);
-        };
-        const Real low = end(i, -1), high = end(i, 1), nearest = end(2, -1), farthest = end(2, 1);
-        if (!(nearest > 0)) return {-HUGE_VALF, HUGE_VALF};  // no slopes: the whole picture
-        return {low / (low < 0 ? nearest : farthest), high / (high > 0 ? nearest : farthest)};
     }
 };
 

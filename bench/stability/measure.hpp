@@ -8,8 +8,8 @@
 #include "formulas.hpp"
 #include "ours.hpp"
 
-#include "../../tests/oracle/flush.hpp"
 #include "../../tests/oracle/library_view.hpp"
+#include "../../tests/platforms/environments.hpp"
 
 #include <lightbin/binner.hpp>
 
@@ -18,7 +18,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -33,7 +32,6 @@ struct Tally {
     std::string formula, precision;
     std::uint64_t lights = 0;       ///< that the formula is for: most know no sphere that the near plane cuts
     double error = 0;               ///< the largest, of a bound within the picture
-    double inward = 0;              ///< the largest on the side that misses: the margin that it needs
     std::uint64_t exact = 0;        ///< tiles, or slices, of the exact rectangles
     std::uint64_t missed_bare = 0;  ///< of those, without a margin
     std::uint64_t missed_same = 0;  ///< with the library's margin
@@ -47,11 +45,9 @@ struct Tally {
 struct Result {
     std::vector<Tally> textbooks;
     Tally ours;
-    std::uint64_t careful = 0, asked = 0;  ///< lights on the careful path, of those in view
-    double margin = 0;                     ///< the library's, in pixels, the largest
-    std::uint64_t checked = 0;             ///< exact bounds that rational arithmetic was asked about
-    std::uint64_t denied = 0;              ///< and those it denied
-    std::uint64_t unlike = 0;              ///< lights whose rectangle behind() does not explain
+    std::uint64_t checked = 0;  ///< exact bounds that rational arithmetic was asked about
+    std::uint64_t denied = 0;   ///< and those it denied
+    std::uint64_t unlike = 0;   ///< lights whose rectangle behind() does not explain
 
     std::vector<const Tally*> all() const {
         std::vector<const Tally*> list;
@@ -101,14 +97,6 @@ template <class Real>
     }
     return {{p[0], p[1]}, -p[2], Real(light.w)};  // all cameras here look down -z
 }
-template <class Real> textbook::SpotOf<Real> spot_in(const Scene& scene, std::size_t i) {
-    const Light &at = scene.lights[i], &cone = scene.cones[i];
-    return {{Real(at.x), Real(at.y), -Real(at.z)},
-            Real(at.w),
-            {Real(cone.x), Real(cone.y), -Real(cone.z)},
-            Real(cone.w)};
-}
-
 /// A textbook's formula in one precision, for the bounds of lights or for slices.
 struct ScreenFormula {
     const char *name, *precision;
@@ -121,27 +109,18 @@ struct ScreenFormula {
 struct SliceFormula {
     const char *name, *precision;
     SlicePlaces (*places)(const DepthScene&, const Light&);
-    double (*sum)(const DepthScene&);
 };
 
 /// Calls use(axis, slopes) for both axes of light i.
 template <class Formula, class Real, class Use>
 void with_slopes(const Scene& scene, std::size_t i, Real n, Use use) {
-    if constexpr (requires { Formula::knows_near_plane; }) {
-        const InCamera<Real> light = in_camera<Real>(scene, i);
-        for (const int axis : {0, 1})
-            use(axis, Formula::slopes(light.c[axis], light.z, light.r, n));
-    } else {
-        const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
-        for (const int axis : {0, 1})
-            use(axis, Formula::slopes(spot, axis, n));
-    }
+    const InCamera<Real> light = in_camera<Real>(scene, i);
+    for (const int axis : {0, 1})
+        use(axis, Formula::slopes(light.c[axis], light.z, light.r, n));
 }
 
 template <class Formula, class Real> ScreenFormula screen_formula() {
-    bool knows_near_plane = true;
-    if constexpr (requires { Formula::knows_near_plane; }) knows_near_plane = Formula::knows_near_plane;
-    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", knows_near_plane,
+    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", Formula::knows_near_plane,
             [](const Scene& scene, std::size_t i, const oracle::ScreenBounds& exact) {
                 Bounds bounds;
                 with_slopes<Formula>(scene, i, exact.near_depth().convert_to<Real>(),
@@ -180,15 +159,7 @@ template <class Formula, class Real> SliceFormula slice_formula() {
         };
         return {place(z - r), place(z + r)};
     };
-    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", places,
-            [](const DepthScene& scene) -> double {
-                int sum = 0;
-                for (const Light& light : scene.lights) {
-                    const SliceRange range = within(scene, places(scene, light));
-                    sum += range.first + range.last;
-                }
-                return sum;
-            }};
+    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", places};
 }
 
 class Measure {
@@ -212,14 +183,9 @@ private:
     void screens() {
         result_.ours.formula = "lightbin", result_.ours.precision = "mixed";
         using namespace textbook;
-        if (family_.spots)
-            formulas_ = {screen_formula<LeastSphere, float>(), screen_formula<LeastSphere, double>(),
-                         screen_formula<ConeBox, float>(), screen_formula<ConeBox, double>()};
-        else
-            formulas_ = {
-                screen_formula<MaraMcGuire, float>(),      screen_formula<MaraMcGuire, double>(),
-                screen_formula<Quadratic, float>(),        screen_formula<Quadratic, double>(),
-                screen_formula<LengyelLauritzen, float>(), screen_formula<LengyelLauritzen, double>()};
+        formulas_ = {screen_formula<MaraMcGuire, float>(),      screen_formula<MaraMcGuire, double>(),
+                     screen_formula<Quadratic, float>(),        screen_formula<Quadratic, double>(),
+                     screen_formula<LengyelLauritzen, float>(), screen_formula<LengyelLauritzen, double>()};
         name_tallies(formulas_);
         std::vector<Scene> scenes, turns;
         for (std::size_t i = 0; i < effort_.scenes; ++i)
@@ -228,11 +194,10 @@ private:
         for (std::size_t i = 0; i < 16; ++i)
             turns.push_back(family_.make(random_, value_, effort_.lights_in_turn / 16));
         // Exact numbers are made of integers: they don't feel it.
-        const oracle::Flush flushing(family_.flush);
+        const Environment flushing({.name = "flushing", .flushes = family_.flush});
         for (const Scene& scene : scenes)
             screen(scene);
-        time_ours(turns);
-        time_textbooks(formulas_, turns);
+        time_all(turns);
     }
 
     static lightbin::View view_of(const Scene& scene) {
@@ -273,37 +238,26 @@ private:
         const oracle::Oracle oracle(scene.camera);
         const oracle::ScreenBounds bounds(oracle);
         const Projected projected = project(view, scene);
-        std::vector<Behind> reasons(scene.lights.size());
-        if (!family_.spots)
-            for (std::size_t i = 0; i < scene.lights.size(); ++i)
-                reasons[i] = behind(constants, projected.in_view[i]);
         const double tile = scene.camera.tile;
         const double margins[] = {static_cast<double>(constants.x.margin) * tile,
                                   static_cast<double>(constants.y.margin) * tile};
-        result_.margin = std::max({result_.margin, margins[0], margins[1]});
         for (std::size_t i = 0; i < scene.lights.size(); ++i) {
             const oracle::CameraBall ball = exact_ball(oracle, scene, scene.lights[i]);
-            std::optional<oracle::ExactSpot> spot;
-            if (family_.spots) {
-                const Light &at = scene.lights[i], &cone = scene.cones[i];
-                spot = oracle::exact_spot(at.x, at.y, at.z, at.w, cone.x, cone.y, cone.z, cone.w);
-            }
             oracle::AxisExtent truth[2];
             for (const int axis : {0, 1}) {
-                truth[axis] = spot ? bounds.extent(axis, ball, *spot) : bounds.extent(axis, ball);
+                truth[axis] = bounds.extent(axis, ball);
                 if (asked_ % effort_.check_every == 0) {
                     ++result_.checked;
-                    result_.denied += !(spot ? bounds.agrees(axis, truth[axis], *spot)
-                                             : bounds.agrees(axis, truth[axis], ball));
+                    result_.denied += !bounds.agrees(axis, truth[axis], ball);
                 }
             }
             ++asked_;
             const bool beyond = ball.depth + ball.radius < *oracle.range().min ||
                                 (oracle.range().max && ball.depth - ball.radius > *oracle.range().max);
             const bool in_view = truth[0].first <= truth[0].last && truth[1].first <= truth[1].last;
-            count_ours(scene, truth, in_view, projected.rects[i], reasons[i]);
+            count_ours(scene, truth, in_view, projected.rects[i], behind(constants, projected.in_view[i]));
             if (beyond) continue;
-            const bool cut = !spot && ball.depth - ball.radius <= *oracle.range().min;
+            const bool cut = ball.depth - ball.radius <= *oracle.range().min;
             for (std::size_t k = 0; k < formulas_.size(); ++k)
                 if (!cut || formulas_[k].knows_near_plane)
                     add_textbook(result_.textbooks[k], scene.camera, formulas_[k].bounds(scene, i, bounds),
@@ -323,7 +277,6 @@ private:
     }
     /// By how much the two ends of a range lie too far inward.
     static void add_error(Tally& tally, double low_inward, double high_inward) {
-        tally.inward = std::max({tally.inward, low_inward, high_inward});
         tally.error = std::max({tally.error, std::abs(low_inward), std::abs(high_inward)});
     }
 
@@ -380,21 +333,9 @@ private:
             bare.low[axis] = reason.low[axis] * scene.camera.tile;
             bare.high[axis] = reason.high[axis] * scene.camera.tile;
         }
-        add_tiles(tally, exact, family_.spots ? emitted : tiles(scene.camera, bare, nullptr), emitted,
-                  emitted);
-        if (family_.spots) {
-            // Tiles are pixels.
-            for (const int axis : {0, 1})
-                if (in_view && area(emitted) > 0)
-                    add_error(tally, emitted.first[axis] - truth[axis].first,
-                              truth[axis].last - emitted.last[axis]);
-            return;
-        }
+        add_tiles(tally, exact, tiles(scene.camera, bare, nullptr), emitted, emitted);
         result_.unlike += !(reason.rect == emitted);
-        if (!in_view) return;
-        ++result_.asked;
-        result_.careful += reason.careful;
-        add_error(tally, scene.camera, truth, bare);
+        if (in_view) add_error(tally, scene.camera, truth, bare);
     }
 
     template <class Formula> void name_tallies(const std::vector<Formula>& formulas) {
@@ -415,48 +356,34 @@ private:
     // Times.
 
     /// Nanoseconds a light: visit(scene) of each in turn, until there is time enough.
-    template <class AnyScene, class Visit>
-    double time(const std::vector<AnyScene>& scenes, Visit visit) const {
-        for (const AnyScene& scene : scenes)
-            visit(scene);
+    template <class Visit> double time(const std::vector<Scene>& scenes, Visit visit) const {
         std::vector<double> rounds;
-        const double start = time_now();
-        std::size_t lights = 0;
-        for (const AnyScene& scene : scenes)
-            lights += scene.lights.size();
+        const double end = time_now() + effort_.seconds;
         do
             rounds.push_back(seconds([&] {
-                for (const AnyScene& scene : scenes)
+                for (const Scene& scene : scenes)
                     visit(scene);
             }));
-        while (time_now() - start < effort_.seconds || rounds.size() < effort_.lights_in_turn / 4096);
-        return median(rounds) / double(lights) * 1e9;
+        while (time_now() < end || rounds.size() < effort_.lights_in_turn / 4096);
+        return median(rounds) / double(scenes.size() * scenes[0].lights.size()) * 1e9;
     }
 
-    template <class Formula, class AnyScene>
-    void time_textbooks(const std::vector<Formula>& formulas, const std::vector<AnyScene>& scenes) {
-        for (std::size_t k = 0; k < formulas.size(); ++k)
+    void time_all(const std::vector<Scene>& scenes) {
+        for (std::size_t k = 0; k < formulas_.size(); ++k)
             if (Tally& tally = result_.textbooks[k]; tally.used())
-                tally.ns = time(scenes, [&](const AnyScene& scene) {
-                    volatile double kept = formulas[k].sum(scene);
+                tally.ns = time(scenes, [&](const Scene& scene) {
+                    volatile double kept = formulas_[k].sum(scene);
                     static_cast<void>(kept);
                 });
-    }
-
-    void time_ours(const std::vector<Scene>& scenes) {
-        struct Turn {
-            const Scene& scene;
-            lightbin::View view;
-            const std::vector<Light>& lights;
-        };
-        std::vector<Turn> turns;
+        std::vector<lightbin::View> views;
         for (const Scene& scene : scenes)
-            turns.push_back({scene, view_of(scene), scene.lights});
-        lightbin::Footprints<false> footprints;
-        const lightbin::Isa isa = lightbin::machine_isa();
-        result_.ours.ns = time(turns, [&](const Turn& turn) {
-            with_lights(turn.scene,
-                        [&](const auto& lights) { footprints.project(isa, turn.view, lights, {}); });
+            views.push_back(view_of(scene));
+        lightbin::Footprints footprints;
+        result_.ours.ns = time(scenes, [&](const Scene& scene) {
+            with_lights(scene, [&](const auto& lights) {
+                footprints.project(lightbin::machine_isa(),
+                                   views[static_cast<std::size_t>(&scene - scenes.data())], lights, {});
+            });
         });
     }
 
@@ -469,21 +396,8 @@ private:
         slice_formulas_ = {slice_formula<LogScaleBias, float>(), slice_formula<LogScaleBias, double>(),
                            slice_formula<LogRatio, float>(), slice_formula<LogRatio, double>()};
         name_tallies(slice_formulas_);
-        std::vector<DepthScene> scenes;
-        for (std::size_t i = 0; i < effort_.scenes; ++i) {
-            scenes.push_back(family_.make_depths(random_, value_, effort_.lights));
-            depth_scene(scenes.back());
-        }
-        time_textbooks(slice_formulas_, scenes);
-        Clusters clusters;
-        std::vector<std::pair<lightbin::View, lightbin::Slices>> made;
-        for (const DepthScene& scene : scenes)
-            made.emplace_back(depth_view(scene), slices_of(scene));
-        result_.ours.ns = time(scenes, [&](const DepthScene& scene) {
-            const auto& [view, slices] = made[static_cast<std::size_t>(&scene - scenes.data())];
-            if (!clusters.bin(view, scene.lights, {.slices = slices}))
-                throw std::logic_error("lights were refused");
-        });
+        for (std::size_t i = 0; i < effort_.scenes; ++i)
+            depth_scene(family_.make_depths(random_, value_, effort_.lights));
     }
 
     using Clusters = lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}>;
@@ -501,7 +415,8 @@ private:
             scene.slices,
             static_cast<float>(static_cast<double>(scene.near_depth) * std::pow(ratio, 1.0 / scene.slices)),
             scene.last);
-        if (!slices) throw std::logic_error("the slices were refused: " + std::string(slices.error().message()));
+        if (!slices)
+            throw std::logic_error("the slices were refused: " + std::string(slices.error().message()));
         return *slices;
     }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The library's rectangles, from its own projection on every instruction set; and what lies behind them, which it does not
-// hand out: where the bounds are before the margin, and which lights go the careful path.
+// hand out: where the bounds are before the margin.
 #pragma once
 
 #include "conditions.hpp"
 
 #include <lightbin/detail/project/footprints.hpp>
-#include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>
@@ -31,31 +30,22 @@ struct Projected {
 
 /// Calls use(Lights) with a scene's lights as the library takes them.
 template <class Use> auto with_lights(const Scene& scene, Use use) {
-    if (!scene.cones.empty()) {
-        const Light* const cones = scene.cones.data();
-        const Light* const first = scene.lights.data();
-        return use(lightbin::view_space(scene.lights, [cones, first](const Light& light) {
-            const Light& cone = cones[&light - first];
-            return lightbin::Spot{light.x, light.y, light.z, light.w, cone.x, cone.y, cone.z, cone.w};
-        }));
-    }
     if (scene.world) return use(lightbin::world_space(scene.lights, scene.world->entry));
     return use(lightbin::view_space(scene.lights));
 }
 
 inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, const Scene& scene) {
     return with_lights(scene, [&](const auto& lights) {
-        lightbin::Footprints<true> footprints;
-        footprints.project(isa, view, lights, {});
+        lightbin::Footprints footprints;
+        footprints.project(isa, view, lights, {}, lightbin::detail::Kept::lights);
         const auto& arrays = footprints.arrays();
         Projected all;
         all.rects.resize(scene.lights.size());
         for (const auto& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 all.rects[arrays.ids[i]] = {{arrays.x0[i], arrays.y0[i]}, {arrays.x1[i], arrays.y1[i]}};
-        if (scene.cones.empty())
-            for (std::size_t i = 0; i < scene.lights.size(); ++i)
-                all.in_view.push_back(lightbin::detail::load_sphere(arrays.view_lights.spheres + i));
+        for (std::size_t i = 0; i < scene.lights.size(); ++i)
+            all.in_view.push_back(lightbin::detail::load_sphere(arrays.view_lights.spheres + i));
         return all;
     });
 }
@@ -64,7 +54,7 @@ inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, con
 inline Projected project(const lightbin::View& view, const Scene& scene) {
     const lightbin::Isa widest = lightbin::machine_isa();
     const Projected all = project_with(widest, view, scene);
-    for (int i = 0; i < static_cast<int>(widest); ++i) {
+    for (int i = static_cast<int>(lightbin::Isa::scalar); i < static_cast<int>(widest); ++i) {
         const auto isa = static_cast<lightbin::Isa>(i);
         if (lightbin::machine_isa(isa) == isa && project_with(isa, view, scene).rects != all.rects)
             throw std::logic_error(std::string(to_string(isa)) + " and " + to_string(widest) + " differ");
@@ -74,7 +64,6 @@ inline Projected project(const lightbin::View& view, const Scene& scene) {
 
 /// How the library comes to a sphere's rectangle.
 struct Behind {
-    bool careful = false;
     double low[2] = {0, 0},
            high[2] = {0, 0};  ///< in tiles, without the margin; of a light that is not culled
     TileRect rect;
@@ -106,9 +95,8 @@ inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sph
             seen = scalar::tile_span<float>(*axes[i], low, high, seen, first + i, last + i);
         }
     } else {
-        result.careful = true;
-        const double signed_sphere[] = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z),
-                                        static_cast<double>(r)};
+        const double signed_sphere[] = {static_cast<double>(x), static_cast<double>(y),
+                                        static_cast<double>(z), static_cast<double>(r)};
         seen = signed_sphere[2] + signed_sphere[3] >= static_cast<double>(camera.near_depth) &&
                signed_sphere[2] - signed_sphere[3] <= static_cast<double>(camera.far_depth);
         double lows[2], highs[2];

@@ -45,7 +45,7 @@ struct Measured {
     }
     /// Whether under some condition even the best textbook in a precision is off by a pixel or a slice.
     bool breaks(std::string_view precision) const {
-        for (std::size_t i = 0; i < results.size() && !family->spots; ++i)
+        for (std::size_t i = 0; i < results.size(); ++i)
             if (const Tally* const best = textbook(i, precision, false); best && best->error >= 1)
                 return true;
         return false;
@@ -76,25 +76,22 @@ inline std::string percent(std::uint64_t part, std::uint64_t whole) {
 
 /// A row a family, at the condition where the best formula in float errs most; of ours also the most of all conditions.
 inline std::vector<TableRow> table(const std::vector<Measured>& all) {
-    std::vector<TableRow> rows = {{"stiff or extreme", "at", "error: best", "worst", "double", "ours",
-                                   "ours at most", "missed: bare", "best", "double", "ours", "excess",
-                                   "at most", "careful", "ns: best", "double", "ours"}};
+    std::vector<TableRow> rows = {{"stiff or extreme", "at", "error: float", "double", "ours", "ours at most",
+                                   "missed: float", "double", "ours", "excess at most", "ns: float", "double",
+                                   "ours"}};
     const auto of = [](const Tally* tally, auto figure) { return tally ? figure(*tally) : std::string("-"); };
     const auto error = [](const Tally& t) { return number(t.error); };
     const auto missed = [](const Tally& t) { return percent(t.missed_same, t.exact); };
-    const auto ns = [](const Tally& t) { return number(t.ns); };
+    const auto ns = [](const Tally& t) { return t.ns > 0 ? number(t.ns) : "-"; };
     for (const Measured& measured : all) {
         const std::size_t i = measured.worst();
         const Result& result = measured.results[i];
         const Tally *const best = measured.textbook(i, "float", false), *const in_double = measured.textbook(
                                                                             i, "double", true);
         rows.push_back({measured.family->title, measured.family->conditions[i].label, of(best, error),
-                        of(measured.textbook(i, "float", true), error), of(in_double, error),
-                        error(result.ours), number(measured.most(&Tally::error)),
-                        of(best, [](const Tally& t) { return percent(t.missed_bare, t.exact); }),
+                        of(in_double, error), error(result.ours), number(measured.most(&Tally::error)),
                         of(best, missed), of(in_double, missed), missed(result.ours),
-                        percent(result.ours.excess()), percent(measured.most(&Tally::excess)),
-                        percent(result.careful, result.asked), of(best, ns), of(in_double, ns),
+                        percent(measured.most(&Tally::excess)), of(best, ns), of(in_double, ns),
                         ns(result.ours)});
     }
     return rows;
@@ -103,8 +100,8 @@ inline std::vector<TableRow> table(const std::vector<Measured>& all) {
 inline void write_csv(const std::vector<Measured>& all) {
     std::FILE* const file = open_report(
         "stability.csv",
-        "family,condition,value,formula,precision,unit,lights,error,error_inward,exact_tiles,missed_without_"
-        "margin,missed_with_our_margin,listed_too_much,ns_a_light,our_margin,share_on_careful_path");
+        "family,condition,value,formula,precision,unit,lights,error,exact_tiles,missed_without_margin,"
+        "missed_with_our_margin,listed_too_much,ns_a_light");
     const auto count = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     for (const Measured& measured : all)
         for (std::size_t i = 0; i < measured.results.size(); ++i)
@@ -115,17 +112,11 @@ inline void write_csv(const std::vector<Measured>& all) {
                              tally->precision.c_str(), measured.family->make_depths ? "slices" : "px",
                              count(tally->lights));
                 if (tally->used())
-                    std::fprintf(file, "%.4g,%.4g,%llu,%llu,%llu,%llu,%.4g", tally->error, tally->inward,
-                                 count(tally->exact), count(tally->missed_bare), count(tally->missed_same),
-                                 count(tally->extra), tally->ns);
+                    std::fprintf(file, "%.4g,%llu,%llu,%llu,%llu,%.4g\n", tally->error, count(tally->exact),
+                                 count(tally->missed_bare), count(tally->missed_same), count(tally->extra),
+                                 tally->ns);
                 else
-                    std::fprintf(file, ",,,,,,");
-                const Result& result = measured.results[i];
-                if (tally == &result.ours && result.asked > 0)
-                    std::fprintf(file, ",%.4g,%.4g\n", result.margin,
-                                 double(result.careful) / double(result.asked));
-                else
-                    std::fprintf(file, ",,\n");
+                    std::fprintf(file, ",,,,,\n");
             }
     std::fclose(file);
 }
@@ -137,8 +128,7 @@ inline std::vector<std::string> verdict(const std::vector<Measured>& all, std::u
     for (const Measured& measured : all) {
         for (const Result& result : measured.results)
             lights += result.ours.lights;
-        if (!measured.family->make_depths && !measured.family->spots)
-            most_ns = std::max(most_ns, measured.most(&Tally::ns));
+        if (!measured.family->make_depths) most_ns = std::max(most_ns, measured.most(&Tally::ns));
     }
     const auto titles = [&](auto wanted) {
         std::string list;
@@ -156,8 +146,7 @@ inline std::vector<std::string> verdict(const std::vector<Measured>& all, std::u
                 number(ordinary.textbook(0, "double", false)->ns) +
                 " ns a sphere in an ordinary scene, in float " +
                 number(ordinary.textbook(0, "float", false)->ns) + ", ours " +
-                number(ordinary.results[0].ours.ns) + " there and up to " + number(most_ns) +
-                " elsewhere. (Slices are timed up to their lists.)",
+                number(ordinary.results[0].ours.ns) + " there and up to " + number(most_ns) + " elsewhere.",
             "Ours lists more than a pixel or a slice too much, where formulas in double would not: " +
                 titles([](const Measured& m) { return m.most(&Tally::error) > 1; }) + "."};
 }

@@ -1,6 +1,5 @@
 # make -f examples/web/web.mk OUT=FOLDER: the page's folder, its objects beside it. Needs what the npm package is built
-# with, and GLM, tinygltf and nlohmann-json, where Debian has them. With FOLDER.objects/lists: what
-# tests/web/lists.mjs compares with.
+# with, and GLM, tinygltf and nlohmann-json, where Debian has them.
 here := examples/web
 OUT := build/web
 objects := $(OUT).objects
@@ -10,14 +9,12 @@ page := $(filter-out %.mk %.py,$(wildcard $(here)/*.*)) $(wildcard tests/fixture
 # and no texture is read.
 flags = -std=c++20 -fwasm-exceptions -Wall -Wextra -Werror \
     -DTINYGLTF_NO_FS -DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE -DTINYGLTF_NO_EXTERNAL_IMAGE \
-    $(headers) -isystem $(objects)/include -O2
-headers := -Iinclude -Iexamples/tiled_forward -I$(here)/module
-package := lightbin.js tables.js lightbin.wasm lightbin_simd.wasm shaders.wasm
+    -Iinclude -Iexamples/tiled_forward -I$(here)/module -isystem $(objects)/include -O2
+package := lightbin.js lightbin.wasm lightbin_simd.wasm shaders.wasm
 shared := gpu_light load_glb made_scene made_street moving_lights projection
 sources := $(wildcard $(here)/module/*.cpp) $(shared:%=examples/tiled_forward/%.cpp)
 compiled := $(patsubst %.cpp,$(objects)/%.o,$(notdir $(sources)))
-native := $(patsubst %,$(objects)/native/%.o,lists binned_lights $(shared))
-vpath %.cpp $(here)/module examples/tiled_forward tests/web
+vpath %.cpp $(here)/module examples/tiled_forward
 
 # It asks for a module that lies where its node does not look.
 export NODE_PATH := /usr/share/nodejs
@@ -54,13 +51,7 @@ $(OUT)/$(notdir $(1)): $(1) | $(OUT)
 endef
 $(foreach file,$(page),$(eval $(call copy,$(file))))
 
-$(objects)/lists: $(native)
-	g++ $^ -ltinygltf -o $@
-
-$(objects)/native/%.o: %.cpp | $(objects)/native
-	g++ -std=c++20 -O1 $(headers) -MMD -c $< -o $@
-
-$(objects)/native $(OUT) $(OUT)/lightbin:
+$(OUT) $(OUT)/lightbin:
 	@mkdir -p $@
 
--include $(compiled:.o=.d) $(native:.o=.d)
+-include $(compiled:.o=.d)

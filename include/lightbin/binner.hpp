@@ -3,9 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/depth/binner_inputs.hpp>
-#include <lightbin/detail/depth/ranked_footprints.hpp>
-#include <lightbin/detail/depth/sliced_footprints.hpp>
-#include <lightbin/detail/engine/grid_lists.hpp>
+#include <lightbin/detail/engine/stages.hpp>
 #include <lightbin/list_format.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -60,9 +58,6 @@ template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
                   "encode() make 8 bits of them");
-    static constexpr bool clusters = options.slicing == Slicing::clusters,
-                          z_bins = options.slicing == Slicing::z_bins,
-                          with_depth = Inputs<options.depth_test, options.slicing>::reads_bounds;
 
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
@@ -72,11 +67,8 @@ public:
 
     Binner() = default;
     /// Takes over the memory and the grid of `other`, which is then like a new Binner.
-    Binner(Binner&& other) noexcept { swap(other); }
-    Binner& operator=(Binner&& other) noexcept {
-        Binner(std::move(other)).swap(*this);
-        return *this;
-    }
+    Binner(Binner&& other) = default;
+    Binner& operator=(Binner&& other) = default;
 
     /// Returns the light grid of `lights` in `view`. Its memory belongs to the Binner and is valid until the next call.
     ///
@@ -92,63 +84,14 @@ public:
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
-        const detail::DefaultFloatEnvironment environment;
-        if (const auto error = project(view, lights, inputs, threads)) return *error;
-        if (const auto error =
-                lists_.template build<kind<LightRange>>(isa_, view, visible(), inputs.bounds, scratch_, threads))
-            return *error;
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists_.tiles(), lists_.indices(), footprints_.counts(),
-                             visible().slices(), visible().ranks());
+        const Slices* slices = nullptr;
+        if constexpr (Inputs::reads_slices) slices = &static_cast<const Slices&>(inputs.slices);
+        return stages_.template bin<Id>(How(), view, detail::as_lights(lights), slices, inputs.bounds, threads);
     }
 
 private:
-    using Lists = detail::GridLists<Id, options.depth_test, clusters>;
-    struct Nothing {};
-    using Ordered =
-        std::conditional_t<clusters, SlicedFootprints, std::conditional_t<z_bins, RankedFootprints, Nothing>>;
-
-    /// The kind of the caller's lights.
-    template <class LightRange>
-    static constexpr detail::LightKind kind =
-        std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::kind;
-
-    /// Projects the lights to footprints and, with z-bins or clusters, orders the footprints by depth.
-    template <class LightRange>
-    std::optional<Error> project(const View& view, const LightRange& lights,
-                                 [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
-        const auto& source = detail::as_lights(lights);
-        if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
-            return error;
-        scratch_.reserve(1, 1);
-        isa_ = machine_isa(options.isa);
-        footprints_.project(isa_, view, source, threads, options.depth_test);
-        if constexpr (Inputs::reads_slices)
-            return ordered_.template order<kind<LightRange>>(isa_, view, footprints_, inputs.slices);
-        else
-            return {};
-    }
-
-    /// Returns the footprints of the lights in view; with z-bins or clusters, sorted by depth bin or slice.
-    const auto& visible() const {
-        if constexpr (Inputs::reads_slices)
-            return ordered_;
-        else
-            return footprints_;
-    }
-
-    void swap(Binner& other) noexcept {
-        std::swap(isa_, other.isa_);
-        scratch_.swap(other.scratch_);
-        std::swap(footprints_, other.footprints_);
-        std::swap(ordered_, other.ordered_);
-        std::swap(lists_, other.lists_);
-    }
-
-    Isa isa_ = Isa::scalar;
-    detail::Buffer<detail::Scratch> scratch_;  ///< working memory, one Scratch per worker
-    Footprints<with_depth || options.slicing != Slicing::none> footprints_;
-    Ordered ordered_;
-    Lists lists_;
+    using How = detail::FixedHow<options>;
+    detail::Stages<How> stages_;
 };
 
 }}  // namespace lightbin

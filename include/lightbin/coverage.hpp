@@ -3,7 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/project/footprints.hpp>
-#include <lightbin/detail/project/light_extent.hpp>
+#include <lightbin/detail/project/spheres_around_shapes.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <vector>
@@ -29,34 +29,65 @@ struct LightCoverage {
 
 namespace detail {
 
-/// Stores the LightCoverage of each light in view, in ascending order of id.
-///
-/// footprints  of lights of the LightKind `kind`, with the lights in view space
-/// to          room for footprints.visible() lights
-template <LightKind kind, class AnyFootprints>
-LIGHTBIN_ONCE void find_coverage(const View& view, const AnyFootprints& footprints, const Parallel& parallel,
-                                 LightCoverage* to) {
-    const std::span<const FootprintRun> runs = footprints.runs();
-    const FootprintArrays& from = footprints.arrays();
-    // The next float above a depth that was rounded to nearest, so that the exact depth is less; infinity as it is.
-    const auto next_above = [](float depth) { return is_finite(depth) ? -next_below(-depth) : depth; };
-    parallel.run(runs.size(), [&](std::size_t run) {
-        LightCoverage* light = to;
-        for (const FootprintRun& before : runs.first(run))
-            light += before.end - before.begin;
-        for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
-            const LightExtent extent = extent_of<kind>(camera_of(view), from.view_lights, from.ids[i]);
-            const double tiles = tiles_across(camera_of(view), extent.sphere);
-            *light++ = {from.ids[i],
-                        from.x0[i],
-                        from.y0[i],
-                        from.x1[i],
-                        from.y1[i],
-                        -next_above(-extent.nearest),
-                        next_above(extent.farthest),
-                        float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
+/// A sphere around a light, and the view depths between which the light lies. The sphere's coordinates are negated
+/// where needed: tile indices grow with x and y, and z is the view depth.
+struct LightExtent {
+    Sphere sphere;
+    float nearest, farthest;
+};
+
+inline float enlarged(float radius, float by) {
+    return float_above(static_cast<double>(radius) + static_cast<double>(by));
+}
+
+/// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of least_sphere() or
+/// bounding_sphere(), enlarged by how far the light can reach outside of the spot or box that was rounded to float.
+template <LightKind kind> LightExtent extent_of(const Camera& camera, const ViewLights& lights, std::uint32_t id) {
+    if constexpr (kind == LightKind::mixed) {
+        const LightKind own_kind = lights.kind_of(id);
+        return own_kind == LightKind::sphere ? extent_of<LightKind::sphere>(camera, lights, id)
+               : own_kind == LightKind::spot ? extent_of<LightKind::spot>(camera, lights, id)
+                                             : extent_of<LightKind::box>(camera, lights, id);
+    } else if constexpr (kind == LightKind::sphere) {
+        const TestedLight light(camera, load_sphere(lights.spheres + id));
+        return {{light.x, light.y, light.z, lights.spheres[id].radius}, light.nearest, light.farthest};
+    } else {
+        const auto& light = lights.template shape<kind>(id);
+        Sphere sphere = light.ball;
+        if constexpr (kind == LightKind::box) {
+            Box whole = {0, 0, 0, infinity, light.centre[0], light.centre[1], light.centre[2], {}, light.taper};
+            copy_items(&light.half_axes[0][0], 9, &whole.half_axes[0][0]);
+            Sphere corners = bounding_sphere(whole);
+            if (!(corners.radius > 0))  // in float, all half axes are 0
+                corners = {light.centre[0], light.centre[1], light.centre[2], 0};
+            corners.radius = enlarged(corners.radius, light.tolerance);
+            if (corners.radius < sphere.radius) sphere = corners;
+        } else if (light.tolerance > 0) {
+            sphere = least_sphere({sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z,
+                                   light.cosine});
+            sphere.radius = enlarged(sphere.radius, light.tolerance);
         }
-    });
+        return {sphere, light.nearest, light.farthest};
+    }
+}
+
+/// Returns how many tiles the projection of a sphere is wide or high, whichever is more; +inf where it has no bound.
+///
+/// Rounding, with u = 2^-53: a slope of tangent_slopes() has a relative error of at most 10u, and an orthographic
+/// bound, centre -+ r, of at most u. So high - low has an error of at most 12u (|low| + |high|), and 16u times this sum
+/// are added. The camera's scale, the product with it and the product with 1 + 8u have a relative error of u each,
+/// which the factor 1 + 8u covers. What clipped_slopes() finds is rounded outward.
+inline double tiles_across(const Camera& camera, const Sphere& sphere) {
+    const double of_sphere[] = {static_cast<double>(sphere.x), static_cast<double>(sphere.y),
+                                static_cast<double>(sphere.z), static_cast<double>(sphere.radius)};
+    double low[2], high[2], tiles = 0;
+    bounds_in_double(camera, of_sphere, low, high);
+    for (unsigned axis = 0; axis < 2; ++axis) {
+        const double width =
+            high[axis] - low[axis] + rounded((abs_of(low[axis]) + abs_of(high[axis])) * 0x1p-49);
+        tiles = max_of(tiles, width * (axis == 0 ? camera.x : camera.y).scale);
+    }
+    return tiles * (1 + 0x1p-50);
 }
 
 }  // namespace detail
@@ -74,10 +105,34 @@ Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& 
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
     const detail::DefaultFloatEnvironment environment;
-    Footprints<true> footprints;
-    footprints.project(machine_isa(isa), view, source, threads);
+    Footprints footprints;
+    footprints.project(machine_isa(isa), view, source, threads, detail::Kept::lights);
     std::vector<LightCoverage> found(footprints.visible());
-    detail::find_coverage<std::remove_cvref_t<decltype(source)>::kind>(view, footprints, threads, found.data());
+    const std::span<const detail::FootprintRun> runs = footprints.runs();
+    const detail::FootprintArrays& from = footprints.arrays();
+    const detail::Camera& camera = detail::camera_of(view);
+    // The next float above a depth that was rounded to nearest, so that the exact depth is less; infinity as it is.
+    const auto next_above = [](float depth) {
+        return detail::is_finite(depth) ? -detail::next_below(-depth) : depth;
+    };
+    Parallel(threads).run(runs.size(), [&](std::size_t run) {
+        LightCoverage* light = found.data();
+        for (const detail::FootprintRun& before : runs.first(run))
+            light += before.end - before.begin;
+        for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
+            constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
+            const detail::LightExtent extent = detail::extent_of<kind>(camera, from.view_lights, from.ids[i]);
+            const double tiles = detail::tiles_across(camera, extent.sphere);
+            *light++ = {from.ids[i],
+                        from.x0[i],
+                        from.y0[i],
+                        from.x1[i],
+                        from.y1[i],
+                        -next_above(-extent.nearest),
+                        next_above(extent.farthest),
+                        detail::float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
+        }
+    });
     return found;
 }
 

@@ -8,10 +8,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Why a call of this library refused its input. to_string() has a sentence that names the likely cause of each.
+/// Why a call of this library refused its input. to_string() has a sentence that names the likely cause of each. The
+/// numbers are those of lightbin_error in lightbin.h.
 enum class ErrorCode : std::uint8_t {
     // View::from_projection
-    matrix_not_finite,
+    matrix_not_finite = 100,
     not_a_projection,
     projection_transposed,
     eye_not_at_origin,
@@ -79,7 +80,6 @@ namespace detail {
 /// A sentence for each ErrorCode, in the order of their values. Users of C and of JavaScript read them, too: an option
 /// is called by its bare name, and no function is named.
 inline constexpr const char* error_sentences[] = {
-    // View::from_projection
     "the projection matrix has a NaN or infinite entry",
     ("the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be a "
      "positive constant alone. Pass the projection alone, not projection times view (the view matrix goes with lights "
@@ -106,14 +106,12 @@ inline constexpr const char* error_sentences[] = {
      "column, or of an orthographic one's fourth"),
     "the viewport's sides must be 0 to {available} pixels, and one is {given}",
     "the tile size must be at least 1 pixel, and is {given}",
-    // lights
     ("the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. Pass the view "
      "matrix alone, not projection times view"),
     ("the world-to-view matrix is transposed, its last column is 0 0 0 1: give the layout that its numbers have in "
      "memory, row major or column major"),
     ("{needed} lights are too many for the id type, which counts to {available}: choose a wider type by the option "
      "ids, or use fewer lights"),
-    // light grid
     ("the light index list, or masks, would need {needed} entries, and 32-bit offsets reach {available}: use larger "
      "tiles, fewer slices, or Z bounds"),
     ("the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: use "
@@ -124,12 +122,10 @@ inline constexpr const char* error_sentences[] = {
      "slices: give their views the same viewport and tile size, and bin with the same slices"),
     ("grids with z-bins cannot be united, as each numbers the lights in its own order of depth: use tiles or clusters, "
      "or give each view a grid of its own"),
-    // Z bounds
     "a Z bounds buffer holds {available} tiles, and the view has {needed}",
     "the depth buffer holds {available} samples and {needed} are needed",
     "a depth buffer has 1 to 8 samples a pixel, not {given}",
     "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}",
-    // slices
     "there must be at least 1 slice, not {given}",
     ("two or more slices need a range of finite depths: 0 < first < last if they are exponential, begin < end if they "
      "are linear"),
@@ -137,10 +133,8 @@ inline constexpr const char* error_sentences[] = {
      "are exponential or linear: too few floats lie in their range for so many slices)"),
     ("tiles times slices (of all views) are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or "
      "fewer slices"),
-    // arrays with one element per light
     "a budget needs a weight for each of the {needed} lights that were binned, and was given {available}",
     "the buffer with one element per light has {available}, and {needed} lights were binned",
-    // encodings and shader text
     "the lists' format numbers {available} lights and {needed} are needed: use wider ids",
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
     "sentinel lists need the option capacity, the lights a tile can hold",
@@ -164,7 +158,6 @@ inline constexpr const char* error_sentences[] = {
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("the option prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
-    // light grids made on the GPU
     "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
     "a grid that is built on the GPU has at most {available} slices, not {given}",
     ("the world-to-view matrix distorts lengths by more than 32, or scales them by more than 2^20 or less than 2^-20: "
@@ -172,14 +165,16 @@ inline constexpr const char* error_sentences[] = {
     ("the passes would need {needed} bytes of scratch memory, and their 32-bit indices reach {available}: use larger "
      "tiles, fewer slices or fewer lights"),
 };
-static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) + 1);
+static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) - 99);
 
 }  // namespace detail
 
 /// Returns one English sentence that names the cause and a remedy. Placeholders {needed}, {available} and {given}
 /// stand for the numbers of an Error, which Error::message() fills in; {given} is Error::needed as a signed number.
 constexpr const char* to_string(ErrorCode code) {
-    return code <= ErrorCode::scratch_too_large ? detail::error_sentences[static_cast<int>(code)] : "unknown error";
+    return code >= ErrorCode::matrix_not_finite && code <= ErrorCode::scratch_too_large
+               ? detail::error_sentences[static_cast<int>(code) - 100]
+               : "unknown error";
 }
 
 }}  // namespace lightbin

@@ -15,14 +15,14 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The instruction sets that have their own kernels. The kernels of all of them give the same bytes.
 enum class Isa : std::uint8_t {
-    scalar,   ///< no vectors, one number at a time: runs on every machine
+    scalar = 1,  ///< no vectors, one number at a time: runs on every machine
     simd128,  ///< vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly (-msimd128)
     avx2,
     avx512,  ///< vectors of 512 bits, AVX-512 with VBMI2 and BITALG: Ice Lake, Zen 4 and later
 };
 
 constexpr const char* to_string(Isa isa) {
-    return detail::name_at(isa, {"scalar", "simd128", "avx2", "avx512"});
+    return detail::name_at(isa, {"?", "scalar", "simd128", "avx2", "avx512"});
 }
 
 /// The widest instruction set that this build contains kernels for.

@@ -84,17 +84,17 @@ typedef enum lightbin_error {
     LIGHTBIN_OUT_OF_MEMORY = 1,
     LIGHTBIN_NULL_ARGUMENT = 2,    /* a pointer that the call needs is null */
     LIGHTBIN_WRONG_SIZE = 3,       /* a struct's `size` is not that of a version that the library knows */
-    LIGHTBIN_LEFT_OUT = 5,         /* compiled without this option or kind of lights, see docs/c.md */
-    LIGHTBIN_NOT_A_VALUE = 6,      /* a number that is no value of its enum, or outside of its range */
-    LIGHTBIN_STRIDE_TOO_SMALL = 7, /* a stride is less than the element that it steps over */
-    LIGHTBIN_NO_SLICES_GIVEN = 8,  /* the binner's options read slices */
-    LIGHTBIN_NO_BOUNDS_GIVEN = 9,  /* the binner's options read Z bounds */
-    LIGHTBIN_NOT_READ = 10,        /* slices, Z bounds or a matrix were given that the options do not read */
-    LIGHTBIN_BUFFER_TOO_SMALL = 12,
-    LIGHTBIN_CALLBACK_THREW = 13,  /* a C++ callback of the program threw an exception */
+    LIGHTBIN_LEFT_OUT = 4,         /* compiled without this option or kind of lights, see docs/c.md */
+    LIGHTBIN_NOT_A_VALUE = 5,      /* a number that is no value of its enum, or outside of its range */
+    LIGHTBIN_STRIDE_TOO_SMALL = 6, /* a stride is less than the element that it steps over */
+    LIGHTBIN_NO_SLICES_GIVEN = 7,  /* the binner's options read slices */
+    LIGHTBIN_NO_BOUNDS_GIVEN = 8,  /* the binner's options read Z bounds */
+    LIGHTBIN_NOT_READ = 9,         /* slices, Z bounds or a matrix were given that the options do not read */
+    LIGHTBIN_BUFFER_TOO_SMALL = 10,
+    LIGHTBIN_CALLBACK_THREW = 11,  /* a C++ callback of the program threw an exception */
     /* A grid is not at the beginning of the memory that another is copied behind it in */
-    LIGHTBIN_OTHER_MEMORY = 15,
-    LIGHTBIN_NO_SUCH_ISA = 16, /* an instruction set that this machine, or the library as it is compiled, lacks */
+    LIGHTBIN_OTHER_MEMORY = 12,
+    LIGHTBIN_NO_SUCH_ISA = 13, /* an instruction set that this machine, or the library as it is compiled, lacks */
 
     LIGHTBIN_MATRIX_NOT_FINITE = 100,
     LIGHTBIN_NOT_A_PROJECTION = 101,
@@ -116,40 +116,40 @@ typedef enum lightbin_error {
     LIGHTBIN_TOO_MANY_LIST_PLACES = 117,
     LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 118,
     LIGHTBIN_ID_BUFFER_TOO_SMALL = 119,
-    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 120,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 121,
-    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 122,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL = 123,
-    LIGHTBIN_NO_SLICES = 125,
-    LIGHTBIN_SLICE_RANGE_EMPTY = 126,
-    LIGHTBIN_SLICES_DO_NOT_ASCEND = 127,
-    LIGHTBIN_TOO_MANY_CELLS = 128,
-    LIGHTBIN_IDS_TOO_NARROW = 129,
-    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 130,
-    LIGHTBIN_CAPACITY_UNKNOWN = 132,
-    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 134,
-    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
-    LIGHTBIN_NO_STORAGE_BUFFERS = 136,
-    LIGHTBIN_NO_TEXEL_BUFFERS = 137,
-    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 138,
-    LIGHTBIN_SLOT_OUT_OF_RANGE = 139,
-    LIGHTBIN_NO_SETS = 140,
-    LIGHTBIN_NO_PUSH_CONSTANTS = 141,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 142,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER = 144,
-    LIGHTBIN_NO_WAVE_OPERATIONS = 145,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 146,
-    LIGHTBIN_BINDINGS_OVERLAP = 147,
-    LIGHTBIN_NOT_A_PREFIX = 148,
-    LIGHTBIN_GRIDS_DIFFER = 149,
-    LIGHTBIN_IDS_ARE_RANKS = 150,
-    LIGHTBIN_TOO_FEW_WEIGHTS = 151,
-    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 152,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE = 154,
-    LIGHTBIN_NO_CULL_OF_BOXES = 156,
-    LIGHTBIN_TOO_MANY_SLICES = 157,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 158,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 159,
+    LIGHTBIN_GRIDS_DIFFER = 120,
+    LIGHTBIN_IDS_ARE_RANKS = 121,
+    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 122,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 123,
+    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 124,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 125,
+    LIGHTBIN_NO_SLICES = 126,
+    LIGHTBIN_SLICE_RANGE_EMPTY = 127,
+    LIGHTBIN_SLICES_DO_NOT_ASCEND = 128,
+    LIGHTBIN_TOO_MANY_CELLS = 129,
+    LIGHTBIN_TOO_FEW_WEIGHTS = 130,
+    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 131,
+    LIGHTBIN_IDS_TOO_NARROW = 132,
+    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 133,
+    LIGHTBIN_CAPACITY_UNKNOWN = 134,
+    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 135,
+    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 136,
+    LIGHTBIN_NO_STORAGE_BUFFERS = 137,
+    LIGHTBIN_NO_TEXEL_BUFFERS = 138,
+    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 139,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 140,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 141,
+    LIGHTBIN_NO_SETS = 142,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 143,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 144,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 145,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 146,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 147,
+    LIGHTBIN_BINDINGS_OVERLAP = 148,
+    LIGHTBIN_NOT_A_PREFIX = 149,
+    LIGHTBIN_NO_CULL_OF_BOXES = 150,
+    LIGHTBIN_TOO_MANY_SLICES = 151,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 152,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 153,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -467,10 +467,11 @@ LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
 
 /* ---- Binners ---- */
 
+/* The width of an id in bytes. 0 stands for LIGHTBIN_U32. */
 typedef enum lightbin_ids {
-    LIGHTBIN_U32 = 0,
-    LIGHTBIN_U8 = 1, /* made by lightbin_encode(), not by a binner */
-    LIGHTBIN_U16 = 2 /* up to 65,536 lights */
+    LIGHTBIN_U8 = 1,  /* made by lightbin_encode(), not by a binner */
+    LIGHTBIN_U16 = 2, /* up to 65,536 lights */
+    LIGHTBIN_U32 = 4
 } lightbin_ids;
 
 /* How slices narrow the lights of a tile by depth. */

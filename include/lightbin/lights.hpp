@@ -18,17 +18,38 @@ template <class Light, class ToLight> struct Lights {
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
     static constexpr detail::LightKind kind = detail::kind_of<detail::MadeBy<ToLight, Light>>;
 
+    using Made = std::conditional_t<kind == detail::LightKind::box, Box,
+                                    std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
+
     /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
-    auto made(const Light& light) const {
-        using Made = std::conditional_t<kind == detail::LightKind::box, Box,
-                                        std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
-        return static_cast<Made>(to_light(light));
-    }
+    Made made(const Light& light) const { return static_cast<Made>(to_light(light)); }
 
     /// Writes what made() returns of the elements first..first + count - 1 of the array.
-    template <class Made> void make(std::size_t first, std::size_t count, Made* to) const {
+    void make(std::size_t first, std::size_t count, Made* to) const {
         for (std::size_t i = 0; i < count; ++i)
             to[i] = made(array[first + i]);
+    }
+
+    /// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
+    /// layout, so that kernels can read the array directly; else null.
+    const void* as_they_are() const {
+        if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
+            return array.data();
+        } else if constexpr (std::is_same_v<ToLight, AsLight> && kind == detail::LightKind::sphere &&
+                             sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
+            if (array.empty()) return nullptr;
+            if constexpr (std::is_base_of_v<Sphere, Light>) {
+                return array.data();
+            } else if constexpr (!std::convertible_to<const Light&, Sphere> && detail::Vec4<Light>) {
+                const void* const first_byte = array.data();
+                const float* const numbers = static_cast<const float*>(first_byte);
+                const Light& first = array.front();
+                if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
+                    &first.w == numbers + 3)
+                    return first_byte;
+            }
+        }
+        return nullptr;
     }
 
     /// Returns the sphere, in view space, of an array element.
@@ -41,24 +62,16 @@ template <class Light, class ToLight> struct Lights {
     /// half axes of a Box, are rounded to nearest, not outward.
     auto view_light(const Light& light) const {
         if constexpr (kind == detail::LightKind::box) {
-            Box box = made(light);
+            const Box box = made(light);
             if (!to_view) return box;
             const Sphere ball = (*to_view)(Sphere{box.x, box.y, box.z, box.radius}),
                          centre = (*to_view)(Sphere{box.box_x, box.box_y, box.box_z, 0});
-            for (float(&axis)[3] : box.half_axes) {
-                const Sphere image = to_view->direction(axis[0], axis[1], axis[2]);
-                axis[0] = image.x;
-                axis[1] = image.y;
-                axis[2] = image.z;
+            Box moved = {ball.x, ball.y, ball.z, ball.radius, centre.x, centre.y, centre.z, {}, box.taper};
+            for (int i = 0; i < 3; ++i) {
+                const Sphere image = to_view->direction(box.half_axes[i][0], box.half_axes[i][1], box.half_axes[i][2]);
+                std::memcpy(moved.half_axes[i], &image, sizeof moved.half_axes[i]);
             }
-            box.x = ball.x;
-            box.y = ball.y;
-            box.z = ball.z;
-            box.radius = ball.radius;
-            box.box_x = centre.x;
-            box.box_y = centre.y;
-            box.box_z = centre.z;
-            return box;
+            return moved;
         } else if constexpr (kind == detail::LightKind::spot) {
             const Spot spot = made(light);
             if (!to_view) return spot;
@@ -157,28 +170,6 @@ template <class Range> auto lasting_lights(Range&& lights) {
                       std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
                   "lightbin: these lights are gone after the expression: give the array a name that lives on");
     return Given(as_lights(lights));
-}
-
-/// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
-/// layout, so that kernels can read the array directly; else null.
-template <class Light, class ToLight> const void* as_they_are(const Lights<Light, ToLight>& lights) {
-    if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
-        return lights.array.data();
-    } else if constexpr (std::is_same_v<ToLight, AsLight> && Lights<Light, ToLight>::kind == LightKind::sphere &&
-                         sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
-        if (lights.array.empty()) return nullptr;
-        if constexpr (std::is_base_of_v<Sphere, Light>) {
-            return lights.array.data();
-        } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4<Light>) {
-            const void* const array = lights.array.data();
-            const float* const numbers = static_cast<const float*>(array);
-            const Light& first = lights.array.front();
-            if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
-                &first.w == numbers + 3)
-                return array;
-        }
-    }
-    return nullptr;
 }
 
 }  // namespace detail

@@ -83,7 +83,7 @@ public:
         if (const auto error = detail::refuse(source)) return *error;
         const detail::DefaultFloatEnvironment environment;
         footprints_.project(machine_isa(isa_), view, source, Parallel());
-        return masks_of(view, footprints_, footprints_.runs(), [](std::uint32_t i) { return i; }, {});
+        return masks_of(view, footprints_.runs(), [](std::uint32_t i) { return i; }, {});
     }
 
     /// Returns masks with z-bins: the lights are numbered in order of depth, and each slice is a bin that has the range
@@ -97,29 +97,29 @@ public:
         if (const auto error = detail::refuse(source)) return *error;
         const detail::DefaultFloatEnvironment environment;
         const Isa isa = machine_isa(isa_);
-        with_depths_.project(isa, view, source, Parallel());
-        ranked_.rank<std::remove_cvref_t<decltype(source)>::kind>(isa, view, with_depths_, slices);
-        const detail::FootprintRun ranks = {0, with_depths_.visible()};
+        constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
+        footprints_.project(isa, view, source, Parallel(), detail::Kept::lights);
+        ranked_.rank(detail::depth_buckets_kernel<kind>(isa), view, footprints_, slices);
+        const detail::FootprintRun ranks = {0, footprints_.visible()};
         const auto footprint_of = [sources = ranked_.sources()](std::uint32_t rank) { return sources[rank]; };
-        return masks_of(view, with_depths_, {&ranks, 1}, footprint_of, ranked_.bins());
+        return masks_of(view, {&ranks, 1}, footprint_of, ranked_.bins());
     }
 
 private:
     /// runs, footprint_of  as for make_masks()
-    template <class AnyFootprints, class FootprintOf>
-    Result<LightMasks> masks_of(const View& view, const AnyFootprints& footprints,
-                                std::span<const detail::FootprintRun> runs, FootprintOf footprint_of,
+    template <class FootprintOf>
+    Result<LightMasks> masks_of(const View& view, std::span<const detail::FootprintRun> runs, FootprintOf footprint_of,
                                 std::span<const BinRange> bins) {
         constexpr std::uint64_t max_words = 0xffffffff;
         const auto columns = static_cast<std::size_t>(view.tiles_x()), rows = static_cast<std::size_t>(view.tiles_y());
-        std::size_t each = (footprints.visible() + std::size_t{31}) / 32;
+        std::size_t each = (footprints_.visible() + std::size_t{31}) / 32;
         // Were masks a power of two apart, those of all columns would lie in the same few sets of a cache.
         each += each > 0 && each % 64 == 0;
         const std::uint64_t masks = columns + rows + std::uint64_t{1},
                             size = 1 + (masks + 32) * each + 2 * std::uint64_t{bins.size()};
         if (size > max_words) return Error{ErrorCode::too_many_entries, size, max_words};
 
-        const detail::FootprintArrays& lights = footprints.arrays();
+        const detail::FootprintArrays& lights = footprints_.arrays();
         std::uint32_t *const words = words_.reserve(size), *to = words;
         *to++ = static_cast<std::uint32_t>(each);
         detail::make_masks(lights, runs, footprint_of, columns, rows, each, to);
@@ -132,12 +132,11 @@ private:
             *to++ = 0;
         if (!bins.empty()) std::memcpy(to, bins.data(), bins.size_bytes());
         return LightMasks(view.tiles_x(), view.tiles_y(), {words, static_cast<std::size_t>(size)},
-                          footprints.counts(), bins);
+                          footprints_.counts(), bins);
     }
 
     Isa isa_;
-    Footprints<false> footprints_;
-    Footprints<true> with_depths_;  ///< for z-bins
+    Footprints footprints_;
     RankedFootprints ranked_;
     detail::Buffer<std::uint32_t> words_;
 };

@@ -1,6 +1,7 @@
 #!/bin/sh
 # sh packaging/npm/build.sh [FOLDER]: makes the npm package in FOLDER (default: build/npm/lightbin). Needs emscripten,
-# binaryen and node: on Debian 12 the packages emscripten, node-acorn, binaryen and nodejs. Takes about two minutes.
+# binaryen, esbuild and node: on Debian 12 the packages emscripten, node-acorn, binaryen, esbuild and nodejs. Takes two
+# minutes.
 set -eu
 me=packaging/npm/build.sh
 cd "$(dirname "$0")/../.."
@@ -12,19 +13,23 @@ work=$out.work
 rm -rf "$out" "$work"
 mkdir -p "$out" "$work"
 
-node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$out/tables.js" "$work/layouts.inl"
+minify() {
+    esbuild "$@" --minify --format=esm --banner:js='// SPDX-License-Identifier: MIT' --log-level=warning
+}
+node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$work/tables.js" "$work/layouts.inl"
+cp $here/lightbin.js "$work"
+minify "$work/lightbin.js" --bundle --outfile="$out/lightbin.js"
+minify $here/three.js $here/playcanvas.js --outdir="$out"
 cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
-for script in lightbin.js three.js playcanvas.js; do
-    grep -v '^ *//[/ ][^S]' $here/$script >"$out/$script" # comments are for who reads the repository
-done
 version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
 sed "s/@VERSION@/$version/" $here/package.json.in >"$out/package.json"
 
-# module NAME FUNCTIONS FLAG...: exports those functions that the package's JavaScript calls whose names have a word of
-# FUNCTIONS, a pattern. With emscripten's own settings for -Os, no vector operation would be inlined.
+# module NAME FUNCTIONS FEATURES FLAG...: exports those functions that the package's JavaScript calls whose names have a
+# word of FUNCTIONS, a pattern. FEATURES are flags of wasm-opt. With emscripten's own settings for -Os, no vector
+# operation would be inlined.
 module() {
-    name=$1 functions=$2
-    shift 2
+    name=$1 functions=$2 features=$3
+    shift 3
     # shellcheck disable=SC2086  # a word a flag
     NODE_PATH=/usr/share/nodejs em++ -std=c++20 -Os -sINLINING_LIMIT=0 -Wall -Wextra -Wshadow -Werror \
         -fno-exceptions -fno-rtti -DNDEBUG "$@" $left_out \
@@ -33,25 +38,29 @@ module() {
         -sMALLOC=emmalloc -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=1MB -sTOTAL_STACK=128KB \
         -sEXPORTED_FUNCTIONS="$(grep -oE '\<(c|exports)\.lightbin_[a-z_]+' $here/lightbin.js | sort -u |
             grep -P "$functions" | sed 's/.*\./_/' | paste -s -d ,),_lightbin_error_text,_malloc,_free,_live_allocations"
-    wasm-dis "$work/$name.wasm" -o "$work/$name.wat"
+    # shellcheck disable=SC2086  # a word a flag
+    wasm-opt $features -Oz --converge -g "$work/$name.wasm" -S -o "$work/$name.wat"
     node $here/sort_functions.mjs <"$work/$name.wat" >"$work/$name.sorted.wat"
-    wasm-as --enable-simd --enable-sign-ext --enable-nontrapping-float-to-int \
-        "$work/$name.sorted.wat" -o "$out/$name.wasm"
+    # shellcheck disable=SC2086
+    wasm-as $features "$work/$name.sorted.wat" -o "$out/$name.wasm"
 }
 # Modules with vectors are only loaded where there are vectors. Text, which few programs ask for, and not in each frame,
 # has a module of its own.
 left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS COVERAGE)
-small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
-vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
+# The second threshold is that of functions that are declared inline, whose default of 325 is made for speed alone.
+small='-mllvm -inline-threshold=0 -mllvm -inlinehint-threshold=40'
+small="$small -fno-vectorize -fno-slp-vectorize -fno-unroll-loops"
+vectors='-msimd128 -msign-ext -mnontrapping-fptoint -mbulk-memory'
+vector_features='--enable-simd --enable-sign-ext --enable-nontrapping-float-to-int --enable-bulk-memory'
 text='lightbin_(view_text|shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'
 # What view_text() and plan_cull() take.
 planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)'
 # shellcheck disable=SC2086  # a word a flag
 {
-    module lightbin "^(?!.*$text)" $small &
-    module lightbin_simd "^(?!.*$text)" $small $vectors
+    module lightbin "^(?!.*$text)" "" $small &
+    module lightbin_simd "^(?!.*$text)" "$vector_features" $small $vectors
     wait $!
-    module shaders "$text|$planned" -Oz
+    module shaders "$text|$planned" "" -Oz
 }
 
 # The shader text of the adapter for three.js, whose options do not change, so that it needs no module for that.
@@ -67,5 +76,5 @@ END
 
 for name in lightbin lightbin_simd; do
     echo "$out: $name.wasm has $(stat -c %s "$out/$name.wasm") bytes; a program that loads it reads" \
-        "$(for file in lightbin.js tables.js $name.wasm; do gzip -9c "$out/$file"; done | wc -c) bytes, compressed by gzip"
+        "$(for file in lightbin.js $name.wasm; do gzip -9c "$out/$file"; done | wc -c) bytes, compressed by gzip"
 done

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The WebAssembly module of the npm package: the C side without what build.sh leaves out, and the module's memory.
 #define LIGHTBIN_IMPLEMENTATION
-#include <lightbin/binner.hpp>
-#include <lightbin/box.hpp>
-#include <lightbin/spot.hpp>
+#include <lightbin/detail/tiers/shape_kernels.hpp>
 
-// What no light and no tile goes through is compiled for size alone.
+// All but the kernels is compiled for size alone.
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)
 #include <lightbin/lightbin.h>
 #pragma clang attribute pop
@@ -15,6 +13,21 @@
 #include <cstddef>
 
 extern "C" {
+
+// JavaScript has these, so that the module needs no tables of logarithms. They serve slices and texts, but no light.
+#define LIGHTBIN_OF_MATH(name) __attribute__((import_module("Math"), import_name(#name)))
+LIGHTBIN_OF_MATH(atan) double math_atan(double a);
+LIGHTBIN_OF_MATH(log2) double math_log2(double a);
+LIGHTBIN_OF_MATH(pow) double math_pow(double base, double exponent);
+double atan(double a) {
+    return math_atan(a);
+}
+double log2(double a) {
+    return math_log2(a);
+}
+double pow(double base, double exponent) {
+    return math_pow(base, exponent);
+}
 
 // Throws in JavaScript, through the functions of the module that were called. The Buffers of the handle are then as
 // usable as after a C++ exception, which the module is compiled without.

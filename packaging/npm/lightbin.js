@@ -573,15 +573,10 @@ class Lists {
     get ids() { return this.#array('ids'); }
     get order() { return this.#array('order'); }
     get bins() { return this.#array('bins'); }
-    /// Writes the lightbin_grid: to the stack, or to where another was.
-    #placed(at) {
-        const {size, ...members} = this.#raw;
-        return this.#core.place('grid', members, 'grid', at);
-    }
     encode(format) {
-        const core = this.#core, {rangeCount, idCount} = this.#raw;
+        const core = this.#core, {size, ...members} = this.#raw, {rangeCount, idCount} = members;
         return core.scope(c => {
-            const from = core.place('format', format, 'format'), grid = this.#placed();
+            const from = core.place('format', format, 'format'), grid = core.place('grid', members, 'grid');
             const bytes_at = c.stackAlloc(8);
             core.check(c.lightbin_encoded_bytes, from, BigInt(rangeCount), BigInt(idCount), bytes_at);
             const bytes = Number(core.heap().getBigUint64(bytes_at, true));
@@ -598,43 +593,41 @@ class Lists {
                 refuse('append: a grid was not made by this module');
             if (grid.idBytes !== this.idBytes)
                 refuse(`append: the ids of one grid have ${this.idBytes} bytes, those of another ${grid.idBytes}`);
+            if (['tilesX', 'tilesY', 'slices'].some(key => grid.#raw[key] !== this.#raw[key]))
+                refuse('append: the grids must have the same numbers of columns and rows of tiles and of slices: give '
+                    + 'their views the same viewport and tile size, and bin with the same slices', 'grids-differ');
         }
         if (new Set(grids).size < grids.length)
             refuse('append: a grid is given twice; each view needs the grid of a binner of its own');
-        const [ranges, ids] = ['rangeCount', 'idCount']
-            .map(key => grids.reduce((sum, grid) => sum + grid.#raw[key], 0));
-        return core.scope(c => {
-            const to = this.#encoded.reserve(8 * ranges + this.#raw.idBytes * ids), ids_at = to + 8 * ranges;
-            const room = [to, BigInt(ranges), ids_at, BigInt(ids)];
-            let before = core.place('grid'), next = core.place('grid');
-            for (const grid of grids)
-                core.scope(() => {
-                    const at = grid.#placed(next);
-                    if (grid === this) core.check(c.lightbin_copy_grid, at, ...room);
-                    else core.check(c.lightbin_append_grid, at, before, ...room);
-                    [before, next] = [at, before];
-                });
-            const Type = this.idBytes === 2 ? Uint16Array : Uint32Array;
-            return {ranges: new Uint32Array(c.memory.buffer, to, 2 * ranges),
-                    ids: new Type(c.memory.buffer, ids_at, ids)};
-        });
+        const sum = key => grids.reduce((sum, grid) => sum + grid.#raw[key], 0);
+        const rangeCount = sum('rangeCount'), idCount = sum('idCount');
+        const to = this.#encoded.reserve(8 * rangeCount + this.#raw.idBytes * idCount), {buffer} = core.c.memory;
+        const all = {ranges: new Uint32Array(buffer, to, 2 * rangeCount),
+                     ids: new this.ids.constructor(buffer, to + 8 * rangeCount, idCount)};
+        let at = 0, offset = 0;
+        for (const {ranges, ids} of grids) {
+            for (let i = 0; i < ranges.length; i += 2) {
+                all.ranges[at++] = offset + ranges[i];
+                all.ranges[at++] = ranges[i + 1];
+            }
+            all.ids.set(ids, offset);
+            offset += ids.length;
+        }
+        return all;
     }
     listLengths() {
-        const core = this.#core;
-        return core.scope(c => {
-            const longest = c.stackAlloc(4), histogram = c.stackAlloc(8 * 33);
-            core.check(c.lightbin_list_lengths, this.#placed(), longest, histogram);
-            return {longest: core.heap().getUint32(longest, true),
-                    histogram: Array.from(core.copy(BigUint64Array, histogram, 8 * 33), Number)};
-        });
+        const {ranges} = this, histogram = new Array(33).fill(0);
+        let longest = 0;
+        for (let i = 1; i < ranges.length; i += 2) {
+            longest = Math.max(longest, ranges[i]);
+            ++histogram[32 - Math.clz32(ranges[i])];
+        }
+        return {longest, histogram};
     }
     countEntries() {
-        const core = this.#core;
-        return core.copied(block => {
-            const to = block.reserve(4 * Math.max(this.lights, 1)), listed = core.c.stackAlloc(4);
-            core.check(core.c.lightbin_count_entries, this.#placed(), to, this.lights, listed);
-            return new Uint32Array(core.c.memory.buffer, to, this.lights);
-        });
+        const {ids, order} = this, entries = new Uint32Array(this.#raw.lights);
+        for (const id of ids) ++entries[order.length > 0 ? order[id] : id];
+        return entries;
     }
 }
 
@@ -837,6 +830,7 @@ async function compile(wasm) {
 
 async function instantiate(module) {
     const {exports} = await WebAssembly.instantiate(module, {
+        Math,
         env: {out_of_memory, emscripten_notify_memory_growth: () => {}},
         wasi_snapshot_preview1: {proc_exit: out_of_memory},  // of abort(), where a size exceeds all memory
     });

@@ -290,6 +290,11 @@ static void test_binners(void) {
     options = options_given(1, 3);
     CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.slicing"));
     options = options_given(1, LIGHTBIN_NO_SLICING);
+    options.isa = -1;
+    CHECK(refuses(lightbin_binner_create(&options, &binner), LIGHTBIN_NOT_A_VALUE, "options.isa"));
+    for (options.isa = LIGHTBIN_AVX512 + 1; options.isa > (int32_t)lightbin_machine_isa(); --options.isa)
+        CHECK(refuses(lightbin_binner_create(&options, &binner),
+                      options.isa > LIGHTBIN_AVX512 ? LIGHTBIN_NOT_A_VALUE : LIGHTBIN_NO_SUCH_ISA, "options.isa"));
     CHECK(binner == NULL);
     CHECK(lightbin_binner_create(NULL, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(&options, &boxes).error == LIGHTBIN_OK);
@@ -644,7 +649,7 @@ static void test_cull(void) {
     options.kind = LIGHTBIN_CULL_BOX;
     CHECK(lightbin_cull_shader(&options, &shader).error == LIGHTBIN_NO_CULL_OF_BOXES);
     options.kind = LIGHTBIN_CULL_SPOT;
-    options.ids = 4;
+    options.ids = 3;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.ids"));
     options.ids = LIGHTBIN_U8;
     CHECK(lightbin_cull_shader(&options, &shader).error == LIGHTBIN_IDS_TOO_NARROW);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Bytes to camera, lights, Z bounds or a depth buffer; then every rung on every tier, the oracle looking on.
+// Bytes to camera, lights, Z bounds or a depth buffer; then the lists on every tier, the oracle looking on.
 #include "../oracle/judge.hpp"
 #include "bytes.hpp"
+
+#include <lightbin/z_bounds.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -72,26 +74,29 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Bytes bytes(data, size);
     Scene scene;
     scene.camera = take_camera(bytes);
-    const Engine engine((bytes.byte() & 7) == 7);
-    if (!engine.accepts(scene.camera)) return 0;
-
+    bytes.byte();
+    const auto made = library_view(scene.camera);
+    if (!made) return 0;
+    const lightbin::View& view = *made;
     const Aim aim(scene.camera);
-    const Camera& camera = scene.camera;
-    const auto tiles = static_cast<std::size_t>((camera.width + camera.tile - 1) / camera.tile) *
-                       static_cast<std::size_t>((camera.height + camera.tile - 1) / camera.tile);
-    const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    const auto pixels = static_cast<std::size_t>(scene.camera.width) * static_cast<std::size_t>(scene.camera.height);
     if (bytes.byte() % 4 == 3 && pixels < 5000) {
-        scene.skip_background = bytes.flag();
-        fill(scene.depth, pixels, bytes, aim);
+        std::vector<float> depth;
+        const bool skip_background = bytes.flag();
+        fill(depth, pixels, bytes, aim);
+        scene.min.resize(view.tile_count()), scene.max.resize(view.tile_count());
+        if (!lightbin::reduce_depth(view, {.depth = depth, .skip_background = skip_background},
+                                    {scene.min, scene.max}))
+            std::abort();
     } else {
         for (auto* side : {&scene.min, &scene.max})
-            fill(*side, tiles, bytes, aim);
+            fill(*side, view.tile_count(), bytes, aim);
     }
     while (!bytes.empty() && scene.lights.size() < 200)
         scene.lights.push_back(take_light(bytes, aim));
 
     Verdicts verdicts;
-    judge_scene(std::move(scene), engine, verdicts);
+    judge_scene(scene, view, verdicts);
     for (const std::string& report : verdicts.reports)
         std::fprintf(stderr, "%s\n", report.c_str());
     if (!verdicts.reports.empty()) std::abort();

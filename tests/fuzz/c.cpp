@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bytes to calls of the C side, with whatever numbers, pointers that may be null, arrays and structs of exactly the size
 // that is stated, and memory that may run out. A call is refused by a sentence, or what it makes is sound; nothing leaks.
+#define LIGHTBIN_NO_SIMD  // of the kernels the scalar ones are enough
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>
 
@@ -9,10 +10,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <initializer_list>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -164,98 +163,9 @@ lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     return options;
 }
 
-/// Whether options, a struct that was given whole, have what an error blames.
-bool deserve(std::int32_t error, const lightbin_cull_options& options) {
-    const auto outside = [](std::int32_t number, std::int32_t last) { return number < 0 || number > last; };
-    switch (error) {
-    case LIGHTBIN_NOT_A_VALUE:
-        return outside(options.language, 7) || outside(options.pass, 4) || outside(options.kind, 2) ||
-               outside(options.ids, 2) || outside(options.slicing, 2);
-    case LIGHTBIN_NO_STORAGE_BUFFERS:
-        return options.language == LIGHTBIN_GLSL_330 || options.language == LIGHTBIN_ESSL_300;
-    case LIGHTBIN_NO_CULL_OF_BOXES:
-        return options.kind == LIGHTBIN_CULL_BOX;
-    case LIGHTBIN_IDS_TOO_NARROW:
-        return options.ids == LIGHTBIN_U8;
-    case LIGHTBIN_NO_SUCH_SLICING_SHADER:
-        return options.slicing == LIGHTBIN_Z_BINS;
-    default:
-        return false;
-    }
-}
-
-/// Whether a call with options succeeded. If not, the options have what the error blames, or it is one of `others`;
-/// if so, they have nothing that is refused.
-bool judged(const lightbin_result& result, const Sized<lightbin_cull_options>& options,
-               std::initializer_list<std::int32_t> others) {
-    static constexpr std::int32_t of_options[] = {
-        LIGHTBIN_NOT_A_VALUE, LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW,
-        LIGHTBIN_NO_SUCH_SLICING_SHADER};
-    const bool fine = judged(result);
-    if (!options.whole()) return fine;  // what is cut off counts as 0
-    if (!fine)
-        require(deserve(result.error, *options.get()) ||
-                    std::find(others.begin(), others.end(), result.error) != others.end(),
-                "an error that the options do not have");
-    for (const std::int32_t error : of_options)
-        require(!fine || !deserve(error, *options.get()), "options that are to be refused");
-    return fine;
-}
-
-/// The text is printable, its brackets pair, and what is to be bound is in it, under the prefix.
-void check_shader(const lightbin_shader* shader, const std::string& prefix) {
-    const std::string text = lightbin_shader_text(shader);
-    std::string open;
-    for (const char c : text) {
-        require(c == '\n' || (c >= ' ' && c <= '~' && c != '$'), "not a character of a shader");
-        const std::size_t kind = std::string_view("()[]{}").find(c);
-        if (kind == std::string_view::npos) continue;
-        if (kind % 2 == 0)
-            open += c;
-        else if (open.empty() || open.back() != "([{"[kind / 2])
-            require(false, "brackets that do not pair");
-        else
-            open.pop_back();
-    }
-    require(open.empty() && text.size() > 200, "a text that does not end");
-    const std::size_t count = lightbin_shader_binding_count(shader);
-    require(count >= 2 && count <= 5, "not the constants and one to four buffers");
-    for (std::size_t i = 0; i <= count; ++i) {
-        lightbin_binding binding = {};
-        binding.size = sizeof binding;
-        require(succeeded(lightbin_shader_binding(shader, i, &binding)) == (i < count),
-                "a binding is missing");
-        if (i == count) break;
-        const std::string name = binding.name;
-        require(name.rfind(prefix, 0) == 0 && text.find(name) != std::string::npos,
-                "a binding that is not in the text");
-    }
-}
-
-/// The sizes and groups are those that lightbin.h documents, computed anew.
-void check_plan(const lightbin_cull_plan& plan, const lightbin_cull_options& options, std::uint64_t tiles,
-                std::uint64_t slices, std::uint64_t lights, std::uint64_t entries) {
-    const auto whole_words = [](std::uint64_t bytes) {
-        return std::max<std::uint64_t>((bytes + 3) / 4 * 4, 16);
-    };
-    const std::uint64_t cells = options.slicing == LIGHTBIN_CLUSTERS ? tiles * slices : tiles;
-    require(plan.tile_bytes == whole_words(8 * cells), "not the ranges of all cells");
-    require(plan.list_bytes == whole_words(entries * (options.ids == LIGHTBIN_U16 ? 2 : 4)),
-            "not all entries");
-    require(plan.scratch_bytes % 4 == 0 && plan.scratch_bytes / 4 <= 0xffffffff &&
-                plan.scratch_bytes >= 16 + 8 * lights + 8 * cells,
-            "scratch memory without room, or that 32 bits do not address");
-    for (const lightbin_cull_groups& groups : plan.groups)
-        require(groups.x >= 1 && groups.x <= 65535 && groups.y >= 1 && groups.y <= 65535,
-                "groups that no device dispatches");
-    require(plan.groups[LIGHTBIN_CULL_PROJECT].x * std::uint64_t{64} * plan.groups[LIGHTBIN_CULL_PROJECT].y >=
-                lights,
-            "lights without a thread");
-}
-
-/// Asks for a text and a plan that make lists on the GPU.
-void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_slices* slices,
-                       std::uint64_t tiles) {
+/// Asks for a text and a plan that make lists on the GPU. That they are refused for a reason, and what they hold, is
+/// shader.cpp's to judge.
+void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_slices* slices) {
     std::string prefix;
     for (unsigned length = bytes.byte() % 8; prefix.size() < length;)
         prefix += static_cast<char>(bytes.byte() % 255 + 1);
@@ -264,12 +174,18 @@ void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_s
                                                bytes);
     const lightbin_cull_options* const given = bytes.byte() > 250 ? nullptr : options.get();
     lightbin_shader* shader = nullptr;
-    if (succeeded(lightbin_cull_shader(given, &shader), options,
-                  {LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_OUT_OF_MEMORY, LIGHTBIN_SLOT_OUT_OF_RANGE,
-                   LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NOT_A_PREFIX}))
-        check_shader(shader, named && options.whole() ? prefix : "");
-    else
+    if (succeeded(lightbin_cull_shader(given, &shader))) {
+        const std::string text = lightbin_shader_text(shader);
+        const std::size_t count = lightbin_shader_binding_count(shader);
+        for (std::size_t i = 0; i <= count; ++i) {
+            lightbin_binding binding = {};
+            binding.size = sizeof binding;
+            require(succeeded(lightbin_shader_binding(shader, i, &binding)) == (i < count), "a binding is missing");
+            require(i == count || text.find(binding.name) != std::string::npos, "a binding that is not in the text");
+        }
+    } else {
         require(shader == nullptr, "a shader in spite of an error");
+    }
     lightbin_shader_destroy(shader);
 
     float numbers[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -284,21 +200,9 @@ void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_s
     const Sized<lightbin_cull_plan> plan(lightbin_cull_plan{}, bytes);
     const std::vector<char> before = plan.copy();
     lightbin_cull_plan* const to = bytes.byte() > 250 ? nullptr : plan.get();
-    if (succeeded(lightbin_plan_cull(view, given, lights, entries, give_slices ? slices : nullptr,
-                                     give_matrix ? &to_view : nullptr, to),
-                  options,
-                  {LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_WRONG_SIZE, LIGHTBIN_NOT_A_VALUE, LIGHTBIN_NOT_READ,
-                   LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP,
-                   LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_MATRIX_NOT_FINITE, LIGHTBIN_VIEW_MATRIX_NOT_AFFINE,
-                   LIGHTBIN_VIEW_MATRIX_TRANSPOSED, LIGHTBIN_VIEW_MATRIX_DISTORTS, LIGHTBIN_TOO_MANY_LIGHTS,
-                   LIGHTBIN_TOO_MANY_SLICES, LIGHTBIN_SCRATCH_TOO_LARGE})) {
-        if (options.whole() && plan.whole())
-            check_plan(*plan.get(), asked, tiles,
-                       slices == nullptr ? 1 : static_cast<std::uint64_t>(lightbin_slices_count(slices)),
-                       lights, entries);
-    } else {
+    if (!succeeded(lightbin_plan_cull(view, given, lights, entries, give_slices ? slices : nullptr,
+                                      give_matrix ? &to_view : nullptr, to)))
         require(plan.copy() == before, "a plan was written in spite of an error");
-    }
 }
 
 void use_calls(Bytes bytes) {
@@ -337,7 +241,7 @@ void use_calls(Bytes bytes) {
     // Some inputs begin with the shaders that make lists on the GPU.
     if (kind >= 192)
         for (int call = 0; call < 3 && !bytes.empty(); ++call)
-            plan_lists_on_gpu(bytes, view, slices, tiles);
+            plan_lists_on_gpu(bytes, view, slices);
     std::vector<float> bounds_memory(2 * tiles);
     for (std::size_t i = 0; i < tiles; ++i) {
         bounds_memory[i] = static_cast<float>(bytes.byte()) / 16;

@@ -18,6 +18,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 using namespace lightbin;
@@ -129,7 +130,7 @@ const std::string language_words =
 /// Brackets pair; names at the outermost level, and those of members that blocks put there, have the prefix.
 void check_text(const std::string& text, const std::string& prefix) {
     require(text.find('$') == std::string::npos, "a placeholder is left", text);
-    std::string open, word, last_outer;
+    std::string open, word;
     bool in_block = false, in_comment = false, in_macro = false;
     for (std::size_t at = 0; at < text.size(); ++at) {
         const char c = text[at];
@@ -140,11 +141,9 @@ void check_text(const std::string& text, const std::string& prefix) {
         }
         if (in_comment || in_macro) continue;
         if (text.compare(at, 2, "//") == 0) in_comment = true;
-        if (text.compare(at, 8, "#define ") == 0) {
-            in_macro = true;
-            require(text.compare(at + 8, prefix.size(), prefix) == 0, "a macro without the prefix", text);
-        }
         if (c == '#') in_macro = true;
+        require(text.compare(at, 8, "#define ") != 0 || text.compare(at + 8, prefix.size(), prefix) == 0,
+                "a macro without the prefix", text);
         if (in_comment || in_macro) continue;
         if (of_a_name(c)) {
             word += c;
@@ -161,15 +160,15 @@ void check_text(const std::string& text, const std::string& prefix) {
             }
             word.clear();
         }
-        if (c == '(' || c == '[' || c == '{') open += c;
-        if (c == ')' || c == ']' || c == '}') {
-            require(!open.empty() && open.back() == (c == ')'   ? '('
-                                                     : c == ']' ? '['
-                                                                : '{'),
-                    "brackets do not pair", text);
+        const std::size_t bracket = std::string_view("()[]{}").find(c);
+        if (bracket == std::string_view::npos) {
+            if (c == ';' && open.empty()) in_block = false;
+        } else if (bracket % 2 == 0) {
+            open += c;
+        } else {
+            require(!open.empty() && open.back() == "([{"[bracket / 2], "brackets do not pair", text);
             open.pop_back();
         }
-        if (c == ';' && open.empty()) in_block = false;
     }
     require(open.empty(), "a bracket is left open", text);
 }

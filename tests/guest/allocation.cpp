@@ -1,17 +1,14 @@
 // Once warm, nothing allocates.
+#include "../unit/scene.hpp"
 #include "counted_new.hpp"
 
 #include <lightbin/budget.hpp>
 #include <lightbin/grid_union.hpp>
-#include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
 
-#include <doctest/doctest.h>
-#include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cstddef>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -19,21 +16,14 @@ namespace {
 
 using namespace lightbin;
 
-std::vector<glm::vec4> random_lights(std::size_t count) {
+/// Larger than test::random_lights(), so that the same kernels are chosen for fewer of them, too.
+std::vector<glm::vec4> large_lights(std::size_t count) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
     std::vector<glm::vec4> lights(count);
     for (glm::vec4& light : lights)
         light = {side(random), side(random), depth(random), radius(random)};
     return lights;
-}
-
-View make_view(int width, int height, int tile_size) {
-    const auto projection =
-        glm::perspective(1.0f, static_cast<float>(width) / static_cast<float>(height), 0.1f, 100.0f);
-    const auto view = View::from_projection(projection, {width, height}, {.tile_size = tile_size});
-    if (!view) std::abort();
-    return *view;
 }
 
 // The number of allocations in one call of work.
@@ -51,7 +41,7 @@ struct Scene {
     Slices slices = *Slices::exponential(9, 1, 50);
 
     Scene(int width, int height, std::size_t light_count)
-        : view(make_view(width, height, 32)), lights(random_lights(light_count)),
+        : view(test::view({width, height}, 32)), lights(large_lights(light_count)),
           depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), min(view.tile_count()),
           max(view.tile_count()), weights(light_count) {
         for (std::size_t i = 0; i < depth.size(); ++i)
@@ -59,9 +49,7 @@ struct Scene {
     }
 
     ZBounds reduce() {
-        const auto bounds = reduce_depth(view, {.depth = depth}, {.min = min, .max = max});
-        if (!bounds) std::abort();
-        return *bounds;
+        return *reduce_depth(view, {.depth = depth}, {.min = min, .max = max});
     }
 };
 
@@ -116,14 +104,10 @@ TEST_CASE("a warm Binner does not allocate, nor does a warm Budget") {
 }
 
 TEST_CASE("nor does one that has threads and fewer lights the second time") {
-    const auto run = [](std::size_t n, auto body) {
-        for (std::size_t i = 0; i < n; ++i)
-            body(i);
-    };
     for (const std::size_t workers : {2u, 5u}) {
         // One less than makes a number of even parts.
         Scene scene(640, 360, workers * 1024);
-        const Parallel parallel(workers, run);
+        const Parallel parallel(workers, test::backwards);
         Binner<> binner;
         (void)*binner.bin(scene.view, scene.lights, {}, parallel);
         scene.lights.pop_back();
@@ -145,7 +129,7 @@ TEST_CASE("a warm MaskBinner does not allocate") {
 
 TEST_CASE("making a view and reducing a depth buffer never allocate") {
     Scene scene(640, 360, 1);
-    CHECK(allocations_in([&] { scene.view = make_view(500, 300, 16); }) == 0);
+    CHECK(allocations_in([&] { scene.view = test::view({500, 300}, 16); }) == 0);
     scene = Scene(640, 360, 1);
     CHECK(allocations_in([&] { scene.reduce(); }) == 0);
 }

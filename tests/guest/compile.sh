@@ -9,6 +9,7 @@ set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
 include=$here/../../include
+. "$here/hostile_macros.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -62,10 +63,11 @@ clang*)
     all --target=aarch64-linux-gnu -std=c++20 -fsyntax-only
     ;;
 esac
-compile -w -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"
+hostile_macros >"$work/hostile_macros.cpp"
+compile -w -std=c++20 -fsyntax-only "$work/hostile_macros.cpp"
 
 # Under -ffast-math lights could be missed, so the headers refuse and say why.
-if refusal=$("$compiler" -I "$include" -std=c++20 -ffast-math -fsyntax-only "$here/hostile_macros.cpp" 2>&1); then
+if refusal=$("$compiler" -I "$include" -std=c++20 -ffast-math -fsyntax-only "$work/hostile_macros.cpp" 2>&1); then
     echo "$compiler accepts -ffast-math" >&2
     exit 1
 fi
@@ -74,7 +76,7 @@ echo "$refusal" | grep -q 'error.*lightbin: -ffast-math'
 # In x87's wider registers other bytes would come out. (clang has no such switch for x86-64.)
 case $compiler in
 g++*)
-    if refusal=$("$compiler" -I "$include" -std=c++20 -mfpmath=387 -fsyntax-only "$here/hostile_macros.cpp" 2>&1); then
+    if refusal=$("$compiler" -I "$include" -std=c++20 -mfpmath=387 -fsyntax-only "$work/hostile_macros.cpp" 2>&1); then
         echo "$compiler accepts x87 arithmetic" >&2
         exit 1
     fi

@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <numeric>
 #include <random>
 #include <string>
 #include <string_view>
@@ -129,20 +128,6 @@ bool same(const Grid& a, const Grid& b) {
     return bytes(a.ranges, b.ranges) && bytes(a.ids, b.ids) && bytes(a.order, b.order) && bytes(a.bins, b.bins);
 }
 
-/// Runs the bodies on the calling thread, in any order.
-struct Runner {
-    template <class Body> void operator()(std::size_t n, const Body& body) const {
-        std::vector<std::size_t> order(n);
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        Random random(seed);
-        for (std::size_t i = n; i > 1; --i)
-            std::swap(order[i - 1], order[random.below(i)]);
-        for (const std::size_t i : order)
-            body(i);
-    }
-    std::uint64_t seed;
-};
-
 /// Calls with lights that are in view space, or with a matrix of floats or doubles.
 template <class Call> auto with_lights(const Scene& scene, Call call) {
     if (!scene.in_world) return call(lightbin::view_space(scene.lights));
@@ -155,7 +140,11 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     static std::unique_ptr<lightbin::Binner<options>> binner;
     Random random(input.seed);
     if (!binner || random.one_in(8)) binner = std::make_unique<lightbin::Binner<options>>();
-    const Runner runner = {input.seed};
+    const bool backward = random.coin();
+    const auto runner = [&](std::size_t n, const auto& body) {  // on this thread, from either end
+        for (std::size_t i = 0; i < n; ++i)
+            body(backward ? n - 1 - i : i);
+    };
     const lightbin::Parallel threads(random.pick<std::size_t>({1, 1, 2, 3, 4, 7, 8, 16, 33, 64}), runner);
     const auto inputs = lightbin::inputs_for<options>(input.bounds.spans(), input.slices);
     const auto grid =
@@ -241,7 +230,7 @@ private:
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
-                lightbin::Footprints<false> rectangles;
+                lightbin::Footprints rectangles;
                 rectangles.project(lightbin::machine_isa(), *view_, lightbin::detail::as_lights(lights), {});
                 return rectangles.area();
             });

@@ -2,9 +2,10 @@
 // Random numbers that are the same on every platform.
 #pragma once
 
+#include "../split_mix.hpp"
+
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <initializer_list>
 #include <limits>
 
@@ -12,17 +13,9 @@ namespace hunt {
 
 inline constexpr float infinite = std::numeric_limits<float>::infinity();
 
-class Random {
+class Random : public SplitMix {
 public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-
-    /// 64 random bits (SplitMix64).
-    std::uint64_t bits() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-        z = (z ^ z >> 27) * 0x94d049bb133111eb;
-        return z ^ z >> 31;
-    }
+    using SplitMix::SplitMix;
 
     /// 0 to n - 1.
     int below(int n) { return static_cast<int>((bits() >> 32) * static_cast<std::uint64_t>(n) >> 32); }
@@ -41,9 +34,6 @@ public:
     template <class T> T pick(std::initializer_list<T> from) {
         return from.begin()[below(static_cast<int>(from.size()))];
     }
-
-private:
-    std::uint64_t state_;
 };
 
 /// A float that nobody would pass: signed zeros, denormals, powers of two, the ends of the range, infinity, NaN.

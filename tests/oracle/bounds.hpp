@@ -13,7 +13,6 @@ namespace oracle {
 
 struct Bounds {
     std::vector<float> min, max;
-    std::vector<std::size_t> owner;  ///< whose tip it is; no light's if there are as many as lights
 };
 
 enum class BoundsShape {
@@ -40,30 +39,17 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
                 high = low + across + up;
             }
             float min = static_cast<float>(low), max = static_cast<float>(high);
-            switch (random.integer(0, 24)) {
-            case 0:
-                std::swap(min, max);
-                break;
-            case 1:
-                min = -inf;
-                break;
-            case 2:
-                max = inf;
-                break;
-            case 3:
-                min = inf, max = -inf;
-                break;  // nothing drawn
-            default:
-                break;
-            }
+            const int odd = random.integer(0, 24);
+            if (odd == 0) std::swap(min, max);
+            if (odd == 1) min = -inf;
+            if (odd == 2) max = inf;
+            if (odd == 3) min = inf, max = -inf;  // nothing drawn
             bounds.min.push_back(min);
             bounds.max.push_back(max);
-            bounds.owner.push_back(lights.size());
         }
     if (shape != BoundsShape::tips) return bounds;
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        for (const float r : {lights[i].w, -lights[i].w}) {
-            const Light& light = lights[i];
+    for (const Light& light : lights)
+        for (const float r : {light.w, -light.w}) {
             float tip = aim.depth_of(light) + r;
             if (is_bad(light) || !std::isfinite(tip) || tip < static_cast<float>(aim.near_plane)) continue;
             const double x = aim.pixel_of(0, aim.coordinate(0, light), static_cast<double>(tip));
@@ -74,7 +60,6 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             const int ulps = random.integer(-1, 1);
             if (ulps != 0) tip = std::nextafter(tip, ulps < 0 ? -inf : inf);
             bounds.min[tile] = bounds.max[tile] = tip;
-            bounds.owner[tile] = i;
         }
     return bounds;
 }

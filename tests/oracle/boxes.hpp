@@ -49,54 +49,35 @@ using Frame = std::array<Triple, 3>;
 /// Three directions of length 1 at right angles, often along the camera's axes or towards the eye.
 inline Frame frame(const Triple& at, Random& random) {
     const Triple first = axis(at, random), second = across(first, random);
-    Frame f = {first,
-               second,
-               {first[1] * second[2] - first[2] * second[1], first[2] * second[0] - first[0] * second[2],
-                first[0] * second[1] - first[1] * second[0]}};
+    Frame f = {first, second, glm::cross(first, second)};
     for (std::size_t i = 0; i < 3; ++i)
         std::swap(f[i], f[static_cast<std::size_t>(random.integer(0, 2))]);
     return f;
 }
-inline Frame sized(Frame f, double a, double b, double c) {
-    const double sizes[] = {a, b, c};
-    for (std::size_t i = 0; i < 3; ++i)
-        f[i] = plus({}, f[i], sizes[i]);
-    return f;
+inline Frame sized(const Frame& f, double a, double b, double c) {
+    return {plus({}, f[0], a), plus({}, f[1], b), plus({}, f[2], c)};
 }
 /// Half axes of about the given size: cubes, slabs, rods; now and then flat, of no width, thin, or at any angles.
 inline Frame half_axes(const Triple& at, double size, Random& random) {
-    const auto some = [&] { return size * random.power_of_two(-4, 0); };
-    Frame f = frame(at, random);
-    switch (random.integer(0, 9)) {
-    case 0:
-        return sized(f, size, some(), 0);
-    case 1:
-        return sized(f, size, 0, 0);
-    case 2:
-        return sized(f, size, some(), size * random.power_of_two(-40, -8));
-    case 3:
-        return sized(f, size, size * random.power_of_two(-30, -8), size * random.power_of_two(-30, -8));
-    case 4:
-    case 5:
+    const auto some = [&](double least = -4, double most = 0) { return size * random.power_of_two(least, most); };
+    if (random.chance(0.2)) {
+        Frame f;
         for (Triple& h : f)
             h = plus({}, any_direction(random), some());
         if (random.chance(0.3)) f[2] = plus(f[0], f[2], random.power_of_two(-30, -4));
         return f;
-    default:
-        return sized(f, size, some(), some());
     }
+    const double sizes[][2] = {{some(), 0},  // flat, a line, thin, a rod
+                               {0, 0},
+                               {some(), some(-40, -8)},
+                               {some(-30, -8), some(-30, -8)},
+                               {some(), some()}};
+    const auto& [b, c] = sizes[std::min(random.integer(0, 7), 4)];
+    return sized(frame(at, random), size, b, c);
 }
 inline double some_taper(Random& random) {
-    switch (random.integer(0, 5)) {
-    case 0:
-        return 0;
-    case 1:
-        return random.uniform();
-    case 2:
-        return random.power_of_two(-30, 0);
-    default:
-        return 1;
-    }
+    const double tapers[] = {0, random.uniform(), random.power_of_two(-30, 0), 1};
+    return tapers[std::min(random.integer(0, 5), 3)];
 }
 
 /// Given to the library as floats.
@@ -130,17 +111,12 @@ inline BoxLight cut(const Aim& aim, Random& random, const Light& ball, double ta
         at = plus(at, h, random.chance(0.3) ? random.sign() : random.uniform(-1.2, 1.2));
     return box(aim, ball, at, f, taper);
 }
-inline BoxLight either(const Aim& aim, Random& random, const Light& ball) {
+/// In a ball of a set of spheres, or cut by it.
+template <auto sphere> BoxLight in_ball(const Aim& aim, Random& random) {
+    const Light ball = sphere(aim, random);
     if (random.chance(0.5)) return cut(aim, random, ball, some_taper(random));
     const Triple c = spots::centre(aim, ball);
     return whole(aim, random, c, half_axes(c, static_cast<double>(ball.w), random), some_taper(random));
-}
-
-inline BoxLight field(const Aim& aim, Random& random) {
-    return either(aim, random, spheres::field(aim, random));
-}
-inline BoxLight in_any_ball(const Aim& aim, Random& random) {
-    return either(aim, random, any_sphere(aim, random));
 }
 
 /// The eye in the box, on a face of it or a hair off, or in the plane of one.
@@ -178,7 +154,7 @@ inline BoxLight touching(const Aim& aim, Random& random) {
     auto [at, n, size] = on_cell(aim, random);
     const Frame f = half_axes(at, size, random);
     for (const Triple& axis : f)
-        at = plus(at, axis, along(axis, n) > 0 ? -1 : 1);
+        at = plus(at, axis, glm::dot(axis, n) > 0 ? -1 : 1);
     at = plus(at, n, size * random.sign() * std::exp2(-random.integer(4, 40)));
     if (random.chance(0.7)) return whole(aim, random, at, f, 1);
     const Triple c = plus(at, any_direction(random), size * random.uniform(0, 1.5));
@@ -191,17 +167,16 @@ inline BoxLight along_edge(const Aim& aim, Random& random) {
     const int i = random.integer(0, 1);
     const double edge = aim.tile_edge(i, random);
     Triple at{0, 0, d}, n{};
-    at[static_cast<std::size_t>(i)] = aim.at(i, edge, d);
-    at[static_cast<std::size_t>(1 - i)] = aim.at(1 - i, aim.pixel(1 - i, random), d);
-    n[static_cast<std::size_t>(i)] = 1, n[2] = -aim.slope(i, edge);
-    n = unit(n);
+    at[i] = aim.at(i, edge, d);
+    at[1 - i] = aim.at(1 - i, aim.pixel(1 - i, random), d);
+    n[i] = 1, n[2] = -aim.slope(i, edge);
+    n = glm::normalize(n);
     const double size = h * random.power_of_two(-8, 1),
                  tilt = random.chance(0.4) ? 0 : random.sign() * random.power_of_two(-45, -8);
-    n = unit(plus(n, any_direction(random), tilt));
+    n = glm::normalize(plus(n, any_direction(random), tilt));
     const Triple side = across(n, random);
-    Frame f = {
-        n, side, {n[1] * side[2] - n[2] * side[1], n[2] * side[0] - n[0] * side[2], n[0] * side[1] - n[1] * side[0]}};
-    f = sized(f, random.chance(0.2) ? 0 : size * random.power_of_two(-6, 0), size, size * random.power_of_two(-4, 0));
+    const Frame f = sized({n, side, glm::cross(n, side)}, random.chance(0.2) ? 0 : size * random.power_of_two(-6, 0), size,
+                          size * random.power_of_two(-4, 0));
     at = plus(at, f[0], random.sign());
     return random.chance(0.7) ? whole(aim, random, at, f, 1)
                               : box(aim, aim.light(at[0], at[1], at[2], size), at, f, some_taper(random));
@@ -232,7 +207,7 @@ inline BoxLight projector(const Aim& aim, Random& random) {
 
 /// Any bits, and bad input.
 inline BoxLight special(const Aim& aim, Random& random) {
-    BoxLight b = random.chance(0.5) ? field(aim, random) : in_any_ball(aim, random);
+    BoxLight b = random.chance(0.5) ? boxes::in_ball<spheres::field>(aim, random) : boxes::in_ball<any_sphere>(aim, random);
     if (random.chance(0.4)) {
         const Light ball = spheres::special(aim, random);
         b.x = ball.x, b.y = ball.y, b.z = ball.z, b.radius = ball.w;
@@ -260,7 +235,7 @@ struct BoxSet {
 inline const std::vector<BoxSet>& box_sets() {
     using namespace boxes;
     static const std::vector<BoxSet> sets = {
-        {"field", boxes::field},        {"in any ball", boxes::in_any_ball},
+        {"field", boxes::in_ball<spheres::field>},        {"in any ball", boxes::in_ball<any_sphere>},
         {"around the eye", around_eye}, {"at the near plane", at_near},
         {"touching", boxes::touching},  {"along an edge", boxes::along_edge},
         {"huge", boxes::huge},          {"projector", projector},

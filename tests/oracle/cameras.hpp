@@ -5,7 +5,6 @@
 #include "../../bench/exact/camera.hpp"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -89,20 +88,29 @@ inline Camera camera_of(const std::string& name, const Lens& lens, const Screen&
             lens.orthographic && lens.reversed};
 }
 
-/// On the first screen and one of the next four, which take turns with the length of the name; or on every screen.
-inline std::vector<Camera> on_screens(const std::string& name, const std::function<Lens(double aspect)>& lens_of,
-                                      bool every = false) {
-    std::vector<Camera> cameras;
-    for (std::size_t i = 0; i < screens().size(); ++i) {
-        const Screen& screen = screens()[i];
-        if (!every && i != 0 && i != 1 + name.size() % 4) continue;
-        cameras.push_back(camera_of(name + " " + std::to_string(screen.width) + "x" +
-                                        std::to_string(screen.height) + "/" + std::to_string(screen.tile) +
+/// A kind of camera: a lens on the first screen and one of the next four, which take turns with the length of the name;
+/// or on every screen.
+struct CameraKind {
+    std::string name;
+    Lens (*lens_of)(double aspect);
+    bool every_screen = false;
+
+    std::vector<Camera> cameras() const {
+        std::vector<Camera> all;
+        for (std::size_t i = 0; i < screens().size(); ++i) {
+            const Screen& screen = screens()[i];
+            if (!every_screen && i != 0 && i != 1 + name.size() % 4) continue;
+            all.push_back(camera_of(name + " " + std::to_string(screen.width) + "x" + std::to_string(screen.height) +
+                                        "/" + std::to_string(screen.tile) +
                                         (screen.upper_left ? " upper left" : " lower left"),
                                     lens_of(aspect_of(screen)), screen));
+        }
+        // 90 degrees and a power-of-two grid: tile edges with slopes such as 3/4, which a ball can touch exactly.
+        if (every_screen)
+            all.push_back(camera_of(name + " 90 degrees", {-1, 1, -1, 1, 0.125, 512}, {256, 256, 32, false}));
+        return all;
     }
-    return cameras;
-}
+};
 
 /// Half the image height at depth 1 is tan(degrees / 2).
 inline Lens symmetric_lens(double aspect, double degrees) {
@@ -120,113 +128,63 @@ inline Lens box_lens(double aspect, double half_height) {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-namespace kinds {
+/// A symmetric lens of so many degrees, or a box of so much height, with a change.
+template <int degrees, auto change> Lens symmetric(double aspect) {
+    Lens lens = symmetric_lens(aspect, degrees);
+    change(lens);
+    return lens;
+}
+template <int half_height, auto change> Lens box(double aspect) {
+    Lens lens = box_lens(aspect, half_height);
+    change(lens);
+    return lens;
+}
 
-/// A kind that is made of a symmetric lens of so many degrees, or of a box of so much height.
-inline std::vector<Camera> of_symmetric(const std::string& name, double degrees, void (*change)(Lens& lens),
-                                        bool every_screen = false) {
-    const auto lens_of = [=](double aspect) {
-        Lens lens = symmetric_lens(aspect, degrees);
-        change(lens);
-        return lens;
+/// CMakeLists.txt reads the names.
+inline const std::vector<CameraKind>& camera_kinds() {
+    static const std::vector<CameraKind> kinds = {
+        {"symmetric", symmetric<60, [](Lens&) {}>, true},
+        {"left_handed", symmetric<60, [](Lens& lens) { lens.looks_up_z = lens.zero_to_one = true; }>},
+        {"right_handed_zero_to_one",
+         symmetric<75, [](Lens& lens) { lens.zero_to_one = true, lens.near_plane = 1e-5; }>},
+        {"off_centre", [](double aspect) { return Lens{-0.9 * aspect, 0.3 * aspect, -0.2, 0.7, 0.25, 500}; }},
+        {"jittered", symmetric<60, [](Lens& lens) {
+             const double x = 0.37 / 1920 * (lens.right - lens.left), y = -0.21 / 1080 * (lens.top - lens.bottom);
+             lens.left += x, lens.right += x, lens.bottom += y, lens.top += y;
+         }>},
+        {"infinite_far", symmetric<60, [](Lens& lens) { lens.far_plane = infinite; }>},
+        {"reversed", symmetric<60, [](Lens& lens) { lens.zero_to_one = lens.reversed = true; }>},
+        {"reversed_minus_one_to_one", symmetric<60, [](Lens& lens) { lens.reversed = lens.looks_up_z = true; }>},
+        {"reversed_infinite", symmetric<60, [](Lens& lens) {
+             lens.zero_to_one = lens.reversed = true, lens.far_plane = infinite;
+         }>},
+        {"y_flip", symmetric<60, [](Lens& lens) { lens.flip_y = lens.zero_to_one = true, lens.top *= 1.25; }>},
+        {"x_flip", symmetric<60, [](Lens& lens) { lens.flip_x = true, lens.left *= 0.75; }>},
+        {"tiny_fov", [](double aspect) { return symmetric_lens(aspect, 0.05); }},
+        {"wide_fov", symmetric<170, [](Lens&) {}>},
+        {"scaled_matrix", symmetric<60, [](Lens& lens) { lens.factor = 3.7e-3; }>},
+        {"double_matrix", symmetric<60, [](Lens& lens) { lens.left *= 0.99, lens.doubles = true; }>},
+        {"screens_off_centre", [](double aspect) {
+             return Lens{-1.97 * aspect, -1.87 * aspect, 0.73, 0.83, 0.1, 1000};
+         }},
+        {"orthographic", box<32, [](Lens&) {}>},
+        {"orthographic_off_centre", box<40, [](Lens& lens) {
+             lens.left += 100, lens.right += 100, lens.bottom -= 10, lens.top -= 10;
+             lens.looks_up_z = lens.zero_to_one = true;
+             lens.near_plane = 0;
+         }>},
+        {"orthographic_reversed", box<25, [](Lens& lens) {
+             lens.reversed = lens.zero_to_one = true, lens.factor = 5;
+         }>},
     };
-    return on_screens(name, lens_of, every_screen);
-}
-inline std::vector<Camera> of_box(const std::string& name, double half_height, void (*change)(Lens& lens)) {
-    return on_screens(name, [=](double aspect) {
-        Lens lens = box_lens(aspect, half_height);
-        change(lens);
-        return lens;
-    });
+    return kinds;
 }
 
-inline std::vector<Camera> symmetric() {
-    auto cameras = of_symmetric("symmetric", 60, [](Lens&) {}, true);
-    // 90 degrees and a power-of-two grid: tile edges with slopes such as 3/4, which a ball can touch exactly.
-    const Lens square{-1, 1, -1, 1, 0.125, 512};
-    cameras.push_back(
-        {"symmetric 90 degrees 256x256/32", projection(square), false, 256, 256, 32, false, false, false});
-    return cameras;
+/// The first camera of a kind.
+inline Camera camera_of_kind(const std::string& name) {
+    for (const CameraKind& kind : camera_kinds())
+        if (kind.name == name) return kind.cameras().front();
+    return {};
 }
-inline std::vector<Camera> left_handed() {
-    return of_symmetric("left-handed [0,1]", 60, [](Lens& lens) { lens.looks_up_z = lens.zero_to_one = true; });
-}
-inline std::vector<Camera> right_handed_zero_to_one() {
-    return of_symmetric("right-handed [0,1]", 75, [](Lens& lens) { lens.zero_to_one = true, lens.near_plane = 1e-5; });
-}
-inline std::vector<Camera> off_centre() {
-    return on_screens(
-        "off-centre", [](double aspect) { return Lens{-0.9 * aspect, 0.3 * aspect, -0.2, 0.7, 0.25, 500}; });
-}
-inline std::vector<Camera> jittered() {
-    return of_symmetric("jittered", 60, [](Lens& lens) {
-        const double x = 0.37 / 1920 * (lens.right - lens.left), y = -0.21 / 1080 * (lens.top - lens.bottom);
-        lens.left += x, lens.right += x, lens.bottom += y, lens.top += y;
-    });
-}
-inline std::vector<Camera> infinite_far() {
-    return of_symmetric("infinite far", 60, [](Lens& lens) { lens.far_plane = infinite; });
-}
-inline std::vector<Camera> reversed() {
-    return of_symmetric("reversed [0,1]", 60, [](Lens& lens) { lens.zero_to_one = lens.reversed = true; });
-}
-inline std::vector<Camera> reversed_minus_one_to_one() {
-    return of_symmetric("reversed [-1,1]", 60, [](Lens& lens) { lens.reversed = lens.looks_up_z = true; });
-}
-inline std::vector<Camera> reversed_infinite() {
-    return of_symmetric("reversed infinite", 60, [](Lens& lens) {
-        lens.zero_to_one = lens.reversed = true, lens.far_plane = infinite;
-    });
-}
-inline std::vector<Camera> y_flip() {
-    return of_symmetric("y flip", 60, [](Lens& lens) { lens.flip_y = lens.zero_to_one = true, lens.top *= 1.25; });
-}
-inline std::vector<Camera> x_flip() {
-    return of_symmetric("x flip", 60, [](Lens& lens) { lens.flip_x = true, lens.left *= 0.75; });
-}
-inline std::vector<Camera> tiny_fov() {
-    return of_symmetric("tiny fov", 0.05, [](Lens&) {});
-}
-inline std::vector<Camera> wide_fov() {
-    return of_symmetric("wide fov", 170, [](Lens&) {});
-}
-inline std::vector<Camera> scaled_matrix() {
-    return of_symmetric("scaled matrix", 60, [](Lens& lens) { lens.factor = 3.7e-3; });
-}
-inline std::vector<Camera> double_matrix() {
-    return of_symmetric("double matrix", 60, [](Lens& lens) { lens.left *= 0.99, lens.doubles = true; });
-}
-inline std::vector<Camera> screens_off_centre() {
-    return on_screens("several screens off-centre", [](double aspect) {
-        const double w = 0.1 * aspect, h = 0.1;
-        return Lens{-19.7 * w, -18.7 * w, 7.3 * h, 8.3 * h, 0.1, 1000};
-    });
-}
-inline std::vector<Camera> orthographic() {
-    return of_box("orthographic", 32, [](Lens&) {});
-}
-inline std::vector<Camera> orthographic_off_centre() {
-    return of_box("orthographic off-centre", 40, [](Lens& lens) {
-        lens.left += 100, lens.right += 100, lens.bottom -= 10, lens.top -= 10;
-        lens.looks_up_z = lens.zero_to_one = true;
-        lens.near_plane = 0;
-    });
-}
-inline std::vector<Camera> orthographic_reversed() {
-    return of_box("orthographic reversed", 25, [](Lens& lens) {
-        lens.reversed = lens.zero_to_one = true, lens.factor = 5;
-    });
-}
-
-}  // namespace kinds
-
-/// Calls X(function name) for every kind.
-#define ORACLE_CAMERA_KINDS(X)                                                                               \
-    X(symmetric)                                                                                             \
-    X(left_handed)                                                                                           \
-    X(right_handed_zero_to_one)                                                                              \
-    X(off_centre) X(jittered) X(infinite_far) X(reversed) X(reversed_minus_one_to_one) X(reversed_infinite)  \
-        X(y_flip) X(x_flip) X(tiny_fov) X(wide_fov) X(scaled_matrix) X(double_matrix) X(screens_off_centre)  \
-            X(orthographic) X(orthographic_off_centre) X(orthographic_reversed)
 
 }  // namespace oracle

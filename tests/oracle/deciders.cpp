@@ -1,40 +1,38 @@
 // SPDX-License-Identifier: MIT
-// The two deciders of oracle.hpp against each other, and each "yes" against a point that lies in both cell
-// and ball. No part of the library takes part.
-#include "cameras.hpp"
-#include "spheres.hpp"
+// The deciders of bench/exact against each other, and what they answer where the answer is known. No part of the
+// library takes part. tests/spot_verdicts holds those of spots and boxes against a million verdicts of before.
+#include "families.hpp"
+#include "spots.hpp"
 
-#include "../../bench/exact/oracle.hpp"
+#include "../../bench/exact/truth.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 using namespace oracle;
 
 namespace {
 
-/// A random run of tiles, often a single one.
-void random_block(Random& random, int tiles, int& first, int& last) {
-    first = random.integer(0, tiles - 1);
-    last = random.chance(0.6) ? first + 1 : random.integer(first + 1, tiles);
-}
-
 struct Tally {
-    int cells = 0, met = 0, empty = 0, touching = 0;
+    int cells = 0, met = 0, empty = 0, filtered = 0;
 };
 
-void compare(const Camera& camera, const Aim& aim, const std::vector<Light>& lights, Random& random,
-             Tally& tally) {
-    const Oracle oracle(camera);
-    for (const Light& light : lights) {
+/// Slabs, half-spaces and, where it has an answer, double precision: about a tile, or more, and any light.
+void compare(const Scene& scene, Random& random, Tally& tally) {
+    Truth truth(scene.camera);
+    const Oracle& oracle = truth.oracle;
+    const Aim aim(scene.camera);
+    const auto some = [&](int tiles, int& first, int& last) {
+        first = random.integer(0, tiles - 1);
+        last = random.chance(0.6) ? first + 1 : random.integer(first + 1, tiles);
+    };
+    for (const Light& light : scene.lights) {
         if (is_bad(light)) continue;
-        const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
-        int x0, x1, y0, y1;
-        random_block(random, oracle.tiles_x(), x0, x1);
-        random_block(random, oracle.tiles_y(), y0, y1);
+        Block b;
+        some(oracle.tiles_x(), b.x0, b.x1);
+        some(oracle.tiles_y(), b.y0, b.y1);
         std::optional<float> min, max;
         const float depth = static_cast<float>(aim.depth(random));
         if (random.chance(0.3)) min = random.chance(0.5) ? depth : std::abs(light.z) - light.w;
@@ -42,85 +40,141 @@ void compare(const Camera& camera, const Aim& aim, const std::vector<Light>& lig
         if (min && !std::isfinite(*min)) min.reset();
         if (max && !std::isfinite(*max)) max.reset();
         const Depths depths = oracle.depths(min, max);
-        const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
+        const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
+        const CameraBall seen = oracle.in_camera(ball);
 
-        const bool fast =
-            meets({oracle.column_slab(columns), oracle.row_slab(rows)}, depths, oracle.in_camera(ball));
-        const auto cell = oracle.half_spaces(columns, rows, depths);
+        const bool by_slabs = meets({truth.columns(b.x0, b.x1), truth.rows(b.y0, b.y1)}, depths, seen);
+        const auto cell = oracle.half_spaces(oracle.columns(b.x0, b.x1), oracle.rows(b.y0, b.y1), depths);
         const auto nearest = nearest_point(cell, ball.centre);
-        bool slow = false;
-        if (nearest) {
-            for (const HalfSpace& h : cell)
-                REQUIRE(h.at(*nearest) >= 0);
-            const Vector away = *nearest - ball.centre;
-            slow = ball.all || dot(away, away) <= square(ball.radius);
-            tally.touching += !ball.all && dot(away, away) == square(ball.radius);
-        }
+        for (const HalfSpace& h : cell)
+            REQUIRE((!nearest || h.at(*nearest) >= 0));
         REQUIRE(nearest.has_value() == !depths.contains_none());
-        if (tally.cells % 10 == 0) REQUIRE(slow == meets(cell, ball));
-        if (fast != slow)
-            FAIL_CHECK(camera.name << ": the deciders differ, tiles " << x0 << " " << x1 << " " << y0 << " "
-                                   << y1);
-        ++tally.cells;
-        tally.met += fast;
-        tally.empty += !nearest;
+        REQUIRE(by_slabs == meets(cell, ball));
+        if (nearest && !ball.all) {
+            const FlatBall flat = {nearly(seen.x), nearly(seen.y), nearly(seen.depth), nearly(ball.radius)};
+            const auto filtered = truth.filter.meets(b.x0, b.x1, b.y0, b.y1, FlatDepths(depths), flat);
+            if (filtered) REQUIRE(*filtered == by_slabs);
+            tally.filtered += filtered.has_value();
+        }
+        ++tally.cells, tally.met += by_slabs, tally.empty += !nearest;
     }
+}
+
+HalfSpace half_space(double x, double y, double z, double b) {
+    return {{exact(x), exact(y), exact(z)}, exact(b)};
+}
+
+/// The box between two corners.
+std::vector<HalfSpace> box(const spots::Triple& low, const spots::Triple& high) {
+    return {half_space(1, 0, 0, -low[0]),  half_space(-1, 0, 0, high[0]), half_space(0, 1, 0, -low[1]),
+            half_space(0, -1, 0, high[1]), half_space(0, 0, 1, -low[2]),  half_space(0, 0, -1, high[2])};
+}
+
+Vector vector(double x, double y, double z) {
+    return {exact(x), exact(y), exact(z)};
 }
 
 }  // namespace
 
-#define AGREE(kind)                                                                                          \
-    TEST_CASE("the deciders agree: " #kind) {                                                                \
-        Tally tally;                                                                                         \
-        std::uint64_t seed = seed_of(#kind);                                                                 \
-        for (const Camera& camera : kinds::kind()) {                                                         \
-            const Aim aim(camera);                                                                           \
-            Random random(seed);                                                                             \
-            for (const SphereSet& set : sphere_sets())                                                       \
-                compare(camera, aim, make(set, camera, 40, seed++), random, tally);                          \
-        }                                                                                                    \
-        MESSAGE(#kind ": " << tally.cells << " cells, " << tally.met << " met, " << tally.empty              \
-                           << " empty, " << tally.touching << " touched in one point");                      \
-        CHECK(tally.cells >= 1200);                                                                          \
-        CHECK(tally.met >= 150);                                                                             \
-        CHECK(tally.cells - tally.met - tally.empty >= 150);                                                 \
-        CHECK(tally.empty >= 20);                                                                            \
-    }
-ORACLE_CAMERA_KINDS(AGREE)
-
-// A closed ball and a closed cell that share one point meet, and only exact arithmetic can say so. Each edge
-// of the grid splits the screen into two blocks; the spheres of this set touch one of the edges, if their
-// numbers come out even.
-TEST_CASE("one point is enough") {
-    int touching = 0;
-    for (const Camera& camera : {kinds::symmetric().back(), kinds::orthographic().front()}) {
-        const Oracle oracle(camera);
-        const SphereSet* exact_set = nullptr;
-        for (const SphereSet& set : sphere_sets())
-            if (set.name == "tile edge exact") exact_set = &set;
-        REQUIRE(exact_set);
-        for (Light light : make(*exact_set, camera, 100, 7)) {
-            for (const bool smaller : {false, true}) {
-                if (smaller) light.w = std::nextafter(light.w, 0.0f);
-                const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
-                for (int edge = 1; edge < oracle.tiles_x(); ++edge)
-                    for (const auto& [first, last] :
-                         {std::pair(0, edge), std::pair(edge, oracle.tiles_x())}) {
-                        const Edges columns = oracle.columns(first, last),
-                                    rows = oracle.rows(0, oracle.tiles_y());
-                        const auto cell = oracle.half_spaces(columns, rows, oracle.range());
-                        const auto nearest = nearest_point(cell, ball.centre);
-                        REQUIRE(nearest.has_value());
-                        const Vector away = *nearest - ball.centre;
-                        const Rational gap = dot(away, away) - square(ball.radius);
-                        const bool fast = meets({oracle.column_slab(columns), oracle.row_slab(rows)},
-                                                oracle.range(), oracle.in_camera(ball));
-                        CHECK(fast == (gap <= 0));
-                        touching += gap.is_zero();
-                    }
-            }
+TEST_CASE("the deciders of balls agree") {
+    Tally tally;
+    for (const Family& family : all_families())
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            Random random(seed_of(family.name) + seed);
+            compare(family.make(random, 150), random, tally);
         }
+    MESSAGE(tally.cells << " cells, " << tally.met << " met, " << tally.empty << " empty, " << tally.filtered
+                        << " decided in double precision");
+    CHECK(tally.met >= 1000);
+    CHECK(tally.cells - tally.met - tally.empty >= 1000);
+    CHECK(tally.empty >= 100);
+    CHECK(tally.filtered >= 1000);
+}
+
+TEST_CASE("spots: certificates that prove nothing") {
+    // Range 5, half angle 60 degrees, along z. Exact numbers: 3-4-5 is within it.
+    const ExactSpot spot = exact_spot(0, 0, 0, 5, 0, 0, 7, 0.5f);
+    const auto cell = box({-9, -9, -9}, {9, 9, 9});
+    CHECK(proves_meeting(cell, spot, {}));
+    CHECK(proves_meeting(cell, spot, vector(3, 0, 4)));
+    CHECK(proves_meeting(box({3, 0, 4}, {9, 9, 9}), spot, vector(3, 0, 4)));
+    CHECK_FALSE(proves_meeting(cell, spot, vector(3, 0, 4 + 0x1p-50)));  // out of the ball
+    CHECK_FALSE(proves_meeting(cell, spot, vector(4, 0, 2)));            // of the cone
+    CHECK_FALSE(proves_meeting(cell, spot, vector(0, 0, -1)));           // behind the apex
+    CHECK_FALSE(proves_meeting(box({3 + 0x1p-50, 0, 4}, {9, 9, 9}), spot, vector(3, 0, 4)));  // of the cell
+
+    const auto apart = [&](const HalfSpace& side, const Rational& weight, const Vector& ball_part) {
+        return proves_apart({side}, spot, {{weight}, ball_part});
+    };
+    CHECK(apart(half_space(0, 0, -1, -1), 1, {}));  // behind the apex
+    CHECK(apart(half_space(1, 0, 0, -6), 1, vector(1, 0, 0)));
+    CHECK_FALSE(apart(half_space(0, 0, -1, 0), 1, {}));    // the apex is in it
+    CHECK_FALSE(apart(half_space(0, 0, -1, -1), -1, {}));  // a weight below 0
+    CHECK_FALSE(apart(half_space(0, 0, 1, 1), -1, {}));    // the same, and g and n right but for it
+    CHECK_FALSE(apart(half_space(0, 0, -1, -1), 0, {}));   // no weight at all
+    CHECK_FALSE(apart(half_space(1, 0, 0, -6), 1, {}));    // the cone reaches that way
+    CHECK_FALSE(apart(half_space(1, 0, 0, -5), 1, vector(1, 0, 0)));  // touches the ball
+    CHECK_FALSE(
+        apart(half_space(1, 0, 0, -6), 1, vector(1 - 0x1p-30, 0, 0)));  // a part that the cone reaches along
+    CHECK_FALSE(proves_apart({half_space(0, 0, -1, -1)}, spot, {}));    // no weights
+    CHECK_FALSE(proves_apart({half_space(0, 0, -1, -1)}, spot, {{1, 1}, {}}));  // too many
+    CHECK(proves_apart({half_space(0, 0, 0, -1)}, spot, {{1}, {}}));            // no points
+}
+
+// A closed spot and a closed cell that share one point meet. An apex, a ray and where a ball ends in a plane are
+// rational, so that even one point in common is found.
+TEST_CASE("spots and balls: one point is enough") {
+    struct Row {
+        std::optional<bool> meets;
+        float apex[3], range, axis[3], cosine;
+    };
+    const float above = std::nextafter(1.0f, 2.0f), below = std::nextafter(1.0f, 0.0f),
+                over_2 = std::nextafter(2.0f, 3.0f), below_3 = std::nextafter(3.0f, 0.0f);
+    std::vector<Row> rows = {
+        // Rays that end in the cell, pass by its edge and its corner.
+        {true, {-2, 1.5f, 1.5f}, 3, {5, 0, 0}, 1},
+        {false, {-2, 1.5f, 1.5f}, below_3, {5, 0, 0}, 1},
+        {true, {0, 3, 1.5f}, 9, {1, -1, 0}, 1},
+        {true, {0, 2, 1}, 9, {1, -1, 0}, 1},
+        {false, {0, 2, below}, 9, {1, -1, 0}, 1},
+        {true, {0, 2, 1.5f}, 9, {1, -1, 0}, 1},
+        {false, {0, 2, 1.5f}, 9, {1, -above, 0}, 1},
+        {true, {0, 2, 1.5f}, 9, {1, -below, 0}, 1},
+        // Balls, and cones that are no obstacle to theirs.
+        {true, {0, 1, 1}, 1, {-1, 0, 0}, -1},
+        {true, {0, 1, 1}, INFINITY, {-1, 0, 0}, 1},
+        {false, {0, 1, 1}, below, {-1, 0, 0}, -1},
+        {true, {-2, 1.5f, 1.5f}, 3, {1, 0.5f, 0.25f}, 0.5f},
+        {false, {-2, 1.5f, 1.5f}, below_3, {1, 0.5f, 0.25f}, 0.5f},
+        {false, {-2, 1.5f, 1.5f}, 3, {1, 1.5f, 0.25f}, 0.75f},
+        // Half balls, and beyond 90 degrees balls that end at the plane of the rim: its distance is rounded.
+        {true, {0, 1, 1}, 1, {3, 0, 0}, 0},
+        {false, {0, 1, 1}, 1, {-3, 0, 0}, 0},
+        {true, {2, 1.5f, 1.5f}, 1, {3, 0, 0}, 0},
+        {false, {over_2, 1.5f, 1.5f}, 1, {3, 0, 0}, 0},
+        {true, {std::nextafter(2.5f, 2.0f), 1.5f, 1.5f}, 1, {3, 0, 0}, -0.5f},
+        {std::nullopt, {2.5f, 1.5f, 1.5f}, 1, {3, 0, 0}, -0.5f},
+        {false, {std::nextafter(2.5f, 3.0f), 1.5f, 1.5f}, 1, {3, 0, 0}, -0.5f},
+    };
+    for (const float cosine : {1.0f, below, 0.5f, 0x1p-100f})  // the apex
+        rows.insert(rows.end(), {{true, {1, 1, 1}, 3, {-1, -1, -1}, cosine},
+                                 {true, {1, 1, 1}, 0, {-1, -1, -1}, cosine},
+                                 {false, {1, 1, below}, 3, {-1, -1, -1}, cosine},
+                                 {false, {1, 1, below}, 0, {1, 1, 1}, cosine},
+                                 {true, {2, 1.5f, 1.5f}, 3, {1, 0, 0}, cosine},
+                                 {false, {over_2, 1.5f, 1.5f}, 3, {1, 0, 0}, cosine}});
+    // The apex on a side of the cell, or a hair off it, and the cone all but the half-space in front of that side.
+    for (const float cosine : {0x1p-149f, 0x1p-54f, 0x1p-20f})
+        for (const float range : {2.0f, 0x1p24f, FLT_MAX})
+            rows.insert(rows.end(), {{false, {1, 1, 0}, range, {-1, 0, 0}, cosine},
+                                     {false, {1, 0, 0}, range, {-3, 0, 0}, cosine},
+                                     {cosine < 0x1p-22f, {above, 1, 0.5f}, range, {-1, 0, 0}, cosine},
+                                     {true, {1, 1, 1}, range, {-1, 0, 0}, cosine},
+                                     {false, {1.5f, 0, 0}, range, {-1, -1, -1}, cosine}});
+    const auto cell = box({1, 1, 1}, {2, 2, 2});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        CAPTURE(i);
+        const auto& [expected, p, range, axis, cosine] = rows[i];
+        CHECK(meets(cell, exact_spot(p[0], p[1], p[2], range, axis[0], axis[1], axis[2], cosine)) == expected);
     }
-    MESSAGE(touching << " balls touch their cell in exactly one point");
-    CHECK(touching >= 50);
 }

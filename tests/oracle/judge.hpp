@@ -1,52 +1,159 @@
 // SPDX-License-Identifier: MIT
-// Holds a scene's light lists against the exact truth: the filter's proof where it has one, else rationals.
+// Holds a scene's light lists, without and with the depth test, against the exact truth: the filter's proof where it
+// has one, else rationals. And every instruction set, and the caller's threads, against the scalar lists.
 #pragma once
 
-#include "engine.hpp"
+#include "families.hpp"
+#include "library_view.hpp"
 
-#include <cstdint>
-#include <memory>
+#include "../../bench/exact/truth.hpp"
+
+#include <lightbin/binner.hpp>
+
+#include <algorithm>
+#include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace oracle {
 
 struct Verdicts {
-    std::uint64_t cases = 0;   ///< lights, each in a scene's lists
-    std::uint64_t proven = 0;  ///< "the ball does not meet this block of tiles"
+    std::uint64_t proven = 0;  ///< "the ball does not meet this tile, between its bounds", or these in a row
     std::uint64_t exact = 0;   ///< of these, decided by rationals
-    std::uint64_t misses = 0, strays = 0;
+    std::uint64_t misses = 0;
     std::vector<std::string> reports;  ///< the first few, and whatever else was wrong
 };
 
 class Judge {
 public:
-    explicit Judge(const Scene& scene);
-    ~Judge();
-    Judge(Judge&&) noexcept;
+    Judge(const Scene& scene, const lightbin::View& view, Verdicts& verdicts)
+        : scene_(scene), view_(view), truth_(scene.camera), verdicts_(verdicts) {
+        for (const Light& light : scene.lights) {
+            if (is_bad(light)) {
+                balls_.emplace_back(), flat_.emplace_back();
+                continue;
+            }
+            balls_.push_back(truth_.oracle.in_camera(exact_ball(light.x, light.y, light.z, light.w)));
+            const CameraBall& b = balls_.back();
+            flat_.push_back({nearly(b.x), nearly(b.y), nearly(b.depth), b.all ? HUGE_VAL : nearly(b.radius)});
+        }
+    }
 
-    /// Every light of every rung, `rectangles` first: what it lacks is proven by whole blocks of tiles, and the
-    /// others by what they lack of it (a light of theirs that it lacks is a stray).
-    void examine(Rung rung, const Lists& lists, Verdicts& verdicts);
+    template <bool depth_test> void judge() {
+        using lightbin::Isa;
+        constexpr auto on = [](Isa isa) { return lightbin::Options{.depth_test = depth_test, .isa = isa}; };
+        const Lists lists = built<on(Isa::scalar)>();
+        // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
+        const auto compare = [&]<Isa isa>() {
+            if (lightbin::machine_isa(isa) == isa && built<on(isa)>() != lists)
+                complain(to_string(isa) + std::string(" differs"));
+        };
+        compare.template operator()<Isa::simd128>();
+        compare.template operator()<Isa::avx2>();
+        compare.template operator()<Isa::avx512>();
+        if (built<lightbin::Options{.depth_test = depth_test}>(3) != lists) complain("with 3 workers it differs");
 
-    /// Puts random questions to filter and rationals. Returns how many the filter answered; adds those it
-    /// answered wrongly to `wrong`.
-    std::uint64_t test_filter(Random& random, std::size_t questions, std::uint64_t& wrong);
+        if (lists.rejected != rejected_of(scene_.lights)) complain("bad lights are miscounted");
+        std::vector<bool> in(lists.ranges.size() * scene_.lights.size());
+        std::size_t end = 0;
+        for (std::size_t tile = 0; tile < lists.ranges.size(); ++tile) {
+            const auto [offset, count] = lists.ranges[tile];
+            if (offset != end || (end += count) > lists.ids.size()) return complain("the lists are out of order");
+            std::int64_t last = -1;
+            for (std::size_t i = offset; i < end; last = lists.ids[i++]) {
+                const std::uint32_t id = lists.ids[i];
+                if (id <= last || id >= scene_.lights.size()) return complain("ids are out of order");
+                const std::size_t pair = tile * scene_.lights.size() + id;
+                if (is_bad(scene_.lights[id])) complain("a bad light is listed");
+                if (depth_test && !in_rectangle_[pair]) complain("a light is listed beyond its rectangle");
+                in[pair] = true;
+            }
+        }
+        const int nx = view_.tiles_x();
+        for (int y = 0; y < view_.tiles_y(); ++y)
+            for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+                const auto tile = [&](int x) { return static_cast<std::size_t>(y * nx + x); };
+                const auto pair = [&](int x) { return tile(x) * scene_.lights.size() + i; };
+                for (int x = 0, x1 = 0; x < nx && !is_bad(scene_.lights[i]); x = x1) {
+                    x1 = x + 1;
+                    if (in[pair(x)] || (depth_test && !in_rectangle_[pair(x)])) continue;
+                    float min = -INFINITY, max = INFINITY;
+                    if (depth_test)
+                        min = scene_.min[tile(x)], max = scene_.max[tile(x)];
+                    else
+                        while (x1 < nx && !in[pair(x1)])
+                            ++x1;
+                    prove(i, {x, x1, y, y + 1}, min, max);
+                }
+            }
+        in_rectangle_ = std::move(in);
+    }
 
 private:
-    class Impl;
-    std::unique_ptr<Impl> impl_;
+    struct Lists {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;  ///< offset and count
+        std::vector<std::uint32_t> ids;
+        std::uint32_t rejected = 0;
+        bool operator==(const Lists&) const = default;
+    };
+
+    template <lightbin::Options options> Lists built(std::size_t workers = 1) {
+        thread_local lightbin::Binner<options> binner;
+        // The caller's threads at their least helpful: one of them, which takes the work from the end.
+        auto run = [](std::size_t n, auto body) {
+            while (n > 0)
+                body(--n);
+        };
+        const auto inputs = lightbin::inputs_for<options>(lightbin::ZBounds{scene_.min, scene_.max});
+        const auto grid = binner.bin(view_, scene_.lights, inputs,
+                                     workers > 1 ? lightbin::Parallel(workers, run) : lightbin::Parallel());
+        if (!grid) {
+            complain("the lights were refused");
+            return {};
+        }
+        Lists lists = {{}, {grid->ids().begin(), grid->ids().end()}, grid->light_counts().rejected};
+        for (const lightbin::ListRange range : grid->ranges())
+            lists.ranges.emplace_back(range.offset, range.count);
+        return lists;
+    }
+
+    /// That a light does not meet tiles whose lists lack it, between bounds, of which NaN is none.
+    void prove(std::size_t i, const Block& tiles, float min, float max) {
+        const double low = static_cast<double>(min), high = static_cast<double>(max);
+        const FlatDepths depths = {low > truth_.range.min ? low : truth_.range.min,
+                                   high < truth_.range.max ? high : truth_.range.max};
+        if (min > max || min == INFINITY || max == -INFINITY || depths.surely_empty()) return;
+        const auto exact_depths = [&] {
+            const auto given = [](float v) { return std::isnan(v) ? std::nullopt : std::optional(v); };
+            return truth_.oracle.depths(given(min), given(max));
+        };
+        const std::uint64_t before = truth_.by_rationals();
+        const bool met = truth_.meets(tiles, depths, flat_[i], exact_depths, [&] { return balls_[i]; });
+        ++verdicts_.proven, verdicts_.exact += truth_.by_rationals() - before;
+        if (!met || ++verdicts_.misses > 5) return;
+        char where[120];
+        std::snprintf(where, sizeof where, " tiles %d..%d, %d, bounds %a..%a", tiles.x0, tiles.x1, tiles.y0, low, high);
+        complain("MISS: light " + text(scene_.lights[i]) + where);
+    }
+
+    void complain(const std::string& what) {
+        if (verdicts_.reports.size() < 20) verdicts_.reports.push_back(what);
+    }
+
+    const Scene& scene_;
+    const lightbin::View& view_;
+    Truth truth_;
+    Verdicts& verdicts_;
+    std::vector<CameraBall> balls_;
+    std::vector<FlatBall> flat_;
+    std::vector<bool> in_rectangle_;  ///< tile by tile
 };
 
-/// Builds and judges every rung of a scene.
-void judge_scene(Scene scene, const Engine& engine, Verdicts& verdicts);
-
-/// One scene of a family: made, built, judged, counted.
-void run_scene(const Family& family, std::uint64_t seed, std::size_t lights, const Engine& engine,
-               Verdicts& verdicts);
-
-/// Judge::test_filter on a scene of a family.
-std::uint64_t test_filter(const Family& family, std::uint64_t seed, std::size_t questions,
-                          std::uint64_t& wrong);
+inline void judge_scene(const Scene& scene, const lightbin::View& view, Verdicts& verdicts) {
+    Judge judge(scene, view, verdicts);
+    judge.judge<false>();
+    judge.judge<true>();
+}
 
 }  // namespace oracle

@@ -62,22 +62,10 @@ float number(Random& random, double low, double high) {
 }
 
 float cosine(Random& random) {
-    switch (random.integer(0, 7)) {
-    case 0:
-        return 1;
-    case 1:
-        return 1 - static_cast<float>(random.power_of_two(-24, -1));
-    case 2:
-        return static_cast<float>(random.power_of_two(-149, -1));
-    case 3: {  // 45 degrees, or next to it
-        const float half = std::sqrt(0.5f);
-        return std::nextafter(half, static_cast<float>(random.integer(0, 1)));
-    }
-    case 4:
-        return static_cast<float>(std::cos(89.99 * std::acos(-1.0) / 180));
-    default:
-        return static_cast<float>(random.uniform(0x1p-20, 1));
-    }
+    const double cosines[] = {1, 1 - random.power_of_two(-24, -1), random.power_of_two(-149, -1),
+                              static_cast<double>(std::nextafter(std::sqrt(0.5f), random.chance(0.5) ? 0.0f : 1.0f)),
+                              std::cos(89.99 * std::acos(-1.0) / 180), random.uniform(0x1p-20, 1)};
+    return static_cast<float>(cosines[std::min(random.integer(0, 7), 5)]);
 }
 
 lightbin::Spot random_spot(Random& random) {

@@ -7,7 +7,8 @@
 
 #include "../../bench/exact/spot.hpp"
 
-#include <array>
+#include <glm/glm.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -46,64 +47,41 @@ inline std::string text(const SpotLight& s) {
 namespace spots {
 
 /// A point or direction in the camera's axes.
-using Triple = std::array<double, 3>;
+using Triple = glm::dvec3;
+using glm::length;
 
-inline double length(const Triple& v) {
-    return std::hypot(v[0], v[1], v[2]);
-}
 inline Triple plus(const Triple& a, const Triple& b, double k) {
-    return {a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]};
-}
-inline Triple unit(const Triple& v) {
-    return plus({}, v, 1 / length(v));
-}
-inline double along(const Triple& a, const Triple& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return a + k * b;
 }
 inline Triple any_direction(Random& random) {
-    return unit({random.normal(), random.normal(), random.normal()});
+    return glm::normalize(Triple{random.normal(), random.normal(), random.normal()});
 }
 /// Of length 1 and at right angles to a direction.
 inline Triple across(const Triple& direction, Random& random) {
     const Triple any = any_direction(random);
-    return unit(plus(any, direction, -along(any, direction)));
+    return glm::normalize(plus(any, direction, -glm::dot(any, direction)));
 }
 
 /// In radians: 0 to 180 degrees, often where formulas change or rounding hurts.
 inline double half_angle(Random& random) {
     const double degree = std::acos(-1.0) / 180;
-    switch (random.integer(0, 11)) {
-    case 0:
-        return 0;
-    case 1:
-        return random.power_of_two(-16, 0);
-    case 2:
-        return 45 * degree + random.sign() * random.power_of_two(-30, -3);
-    case 3:
-        return 90 * degree - random.power_of_two(-30, -3);
-    case 4:
-        return random.chance(0.5) ? 90 * degree : random.uniform(90, 180) * degree;
-    case 5:
-        return random.uniform(90, 139) * degree;
-    default:
-        return random.uniform(0, 90) * degree;
-    }
+    const double angles[] = {0,
+                             random.power_of_two(-16, 0),
+                             45 * degree + random.sign() * random.power_of_two(-30, -3),
+                             90 * degree - random.power_of_two(-30, -3),
+                             random.chance(0.5) ? 90 * degree : random.uniform(90, 180) * degree,
+                             random.uniform(90, 139) * degree,
+                             random.uniform(0, 90) * degree};
+    return angles[std::min(random.integer(0, 11), 6)];
 }
 
 /// An axis as often along or across the view, or from or to the eye, as any.
 inline Triple axis(const Triple& apex, Random& random) {
-    switch (random.integer(0, 7)) {
-    case 0:
-        return {0, 0, random.sign()};
-    case 1:
-        return {random.sign(), 0, 0};
-    case 2:
-        return {0, random.sign(), 0};
-    case 3:
-        return length(apex) > 0 ? plus({}, unit(apex), random.sign()) : any_direction(random);
-    default:
-        return any_direction(random);
-    }
+    const double sign = random.sign();
+    const Triple any = any_direction(random),
+                 axes[] = {{0, 0, sign}, {sign, 0, 0}, {0, sign, 0},
+                           length(apex) > 0 ? plus({}, glm::normalize(apex), sign) : any, any};
+    return axes[std::min(random.integer(0, 7), 4)];
 }
 
 /// Given to the library as floats, the axis often of another length than 1.
@@ -126,32 +104,22 @@ inline Light any_sphere(const Aim& aim, Random& random) {
                                                                                                     random);
 }
 
-/// The spot's own ball is one of the field's, or of any set of spheres.
-inline SpotLight field(const Aim& aim, Random& random) {
-    const Light ball = spheres::field(aim, random);
-    const Triple apex = centre(aim, ball);
-    return spot(aim, random, apex, static_cast<double>(ball.w), axis(apex, random), half_angle(random));
-}
-inline SpotLight in_any_ball(const Aim& aim, Random& random) {
-    const Light ball = any_sphere(aim, random);
+/// The spot's own ball is one of a set of spheres.
+template <auto sphere> SpotLight in_ball(const Aim& aim, Random& random) {
+    const Light ball = sphere(aim, random);
     const Triple apex = centre(aim, ball);
     return spot(aim, random, apex, static_cast<double>(ball.w), axis(apex, random), half_angle(random));
 }
 
-/// The least sphere around it is one of the field's, or of any set of spheres.
-inline SpotLight in_sphere(const Aim& aim, Random& random, const Light& sphere) {
-    const Triple c = centre(aim, sphere), a = axis(c, random);
-    const double angle = half_angle(random), cosine = std::cos(angle), r = static_cast<double>(sphere.w);
+/// The least sphere around it is.
+template <auto sphere> SpotLight in_least(const Aim& aim, Random& random) {
+    const Light ball = sphere(aim, random);
+    const Triple c = centre(aim, ball), a = axis(c, random);
+    const double angle = half_angle(random), cosine = std::cos(angle), r = static_cast<double>(ball.w);
     if (cosine <= 0) return spot(aim, random, c, r, a, angle);
     const bool narrow = 2 * cosine * cosine >= 1;
     const double range = narrow ? 2 * r * cosine : r / std::sin(angle);
     return spot(aim, random, plus(c, a, narrow ? -r : -range * cosine), range, a, angle);
-}
-inline SpotLight least_field(const Aim& aim, Random& random) {
-    return in_sphere(aim, random, spheres::field(aim, random));
-}
-inline SpotLight least_any(const Aim& aim, Random& random) {
-    return in_sphere(aim, random, any_sphere(aim, random));
 }
 
 /// The apex at the eye, on the near plane, or a hair from them.
@@ -184,11 +152,11 @@ inline OnCell on_cell(const Aim& aim, Random& random) {
         pixel[i] = edge ? aim.tile_edge(i, random) : aim.pixel(i, random, 0);
         if (!edge) continue;
         const double weight = random.sign() * random.power_of_two(-6, 0);
-        n[static_cast<std::size_t>(i)] += weight;
+        n[i] += weight;
         n[2] -= weight * aim.slope(i, pixel[i]);
     }
     if (sides >> 2 != 0) n[2] += random.sign() * random.power_of_two(-6, 0);
-    return {{aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d}, unit(n), size};
+    return {{aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d}, glm::normalize(n), size};
 }
 
 /// Just touches a tile's cell, or misses that by 2^-k of its size: by the apex, the rim or the cap, as the direction
@@ -205,7 +173,7 @@ inline SpotLight touching(const Aim& aim, Random& random) {
     if (turn <= angle) {
         reach = plus({}, n, r);
     } else if (cosine * std::cos(turn) + sine * std::sin(turn) > 0) {
-        const Triple aside = unit(plus(n, a, -along(n, a)));
+        const Triple aside = glm::normalize(plus(n, a, -glm::dot(n, a)));
         reach = plus(plus({}, a, r * cosine), aside, r * sine);
     }
     const double off = r * random.sign() * std::exp2(-random.integer(4, 40));
@@ -218,7 +186,7 @@ inline SpotLight touching(const Aim& aim, Random& random) {
 inline SpotLight eye_on_cone(const Aim& aim, Random& random) {
     const Light ball = random.chance(0.5) ? spheres::field(aim, random) : any_sphere(aim, random);
     const Triple apex = centre(aim, ball);
-    const Triple from_eye = aim.orthographic || !(length(apex) > 0) ? Triple{0, 0, 1} : unit(apex);
+    const Triple from_eye = aim.orthographic || !(length(apex) > 0) ? Triple{0, 0, 1} : glm::normalize(apex);
     const double angle = std::min(half_angle(random), std::acos(0.0)),
                  turn = angle * (1 + random.sign() * random.power_of_two(-45, -3));
     const Triple side = across(from_eye, random),
@@ -235,8 +203,8 @@ inline SpotLight along_edge(const Aim& aim, Random& random) {
     at[i] = aim.at(i, edge, d);
     at[1 - i] = aim.at(1 - i, aim.pixel(1 - i, random), d);
     Triple n{};
-    n[static_cast<std::size_t>(i)] = 1, n[2] = -aim.slope(i, edge);
-    n = unit(n);
+    n[i] = 1, n[2] = -aim.slope(i, edge);
+    n = glm::normalize(n);
     const double right_angle = std::acos(0.0), angle = std::min(half_angle(random), right_angle),
                  turn = right_angle - (random.chance(0.3) ? 0 : angle) +
                         random.sign() * random.power_of_two(-45, -10);
@@ -255,7 +223,7 @@ inline SpotLight huge(const Aim& aim, Random& random) {
 
 /// Any bits, and bad input.
 inline SpotLight special(const Aim& aim, Random& random) {
-    SpotLight light = random.chance(0.5) ? field(aim, random) : least_field(aim, random);
+    SpotLight light = random.chance(0.5) ? in_ball<spheres::field>(aim, random) : in_least<spheres::field>(aim, random);
     if (random.chance(0.5)) light.ball = spheres::special(aim, random);
     constexpr float inf = std::numeric_limits<float>::infinity();
     const float odd[] = {0,   -0.0f, FLT_TRUE_MIN,  FLT_MIN, FLT_MAX, -FLT_MAX,
@@ -276,10 +244,10 @@ struct SpotSet {
 inline const std::vector<SpotSet>& spot_sets() {
     using namespace spots;
     static const std::vector<SpotSet> sets = {
-        {"field", field},
-        {"in any ball", in_any_ball},
-        {"least sphere in the field", least_field},
-        {"least sphere", least_any},
+        {"field", in_ball<spheres::field>},
+        {"in any ball", in_ball<any_sphere>},
+        {"least sphere in the field", in_least<spheres::field>},
+        {"least sphere", in_least<any_sphere>},
         {"at the eye", at_eye},
         {"touching", touching},
         {"eye on the cone", eye_on_cone},

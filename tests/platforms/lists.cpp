@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// lists [SCENES]: builds the lists of so many random scenes (60 if not given) by every option, on every instruction set
+// lists [SCENES [threads]]: builds the lists of so many random scenes (60 if not given) by every option, on every instruction set
 // that this machine has and for several threads, which must not change a byte. Prints a hash for each option, and one of
 // all of them: these are the same on every platform. tests/platforms.sh holds them against each other. Then it does so
 // again in every floating-point environment that a caller may have set, of a sixth of the scenes: that must not change a
-// byte either, and what traps must not end the program.
+// byte either, and what traps must not end the program. With `threads`, Binners of all options work at once, each on a
+// thread of its own, and some whose work several threads share: the thread sanitizer says whether they share more than
+// their input.
 //
 // Every input is a whole number times a power of two, or a rounded product: fused sums, functions, the distributions of
 // <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and
@@ -28,6 +30,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -452,6 +455,38 @@ void check_environments(const std::vector<Scene>& scenes) {
     }
 }
 
+/// What a Binner of its own makes of the scenes, one after another.
+template <Options options> std::uint64_t hash_of(const std::vector<Scene>& scenes, const Parallel& parallel) {
+    Builder<with(options, compiled_isa)> builder;
+    Hash hash;
+    for (std::size_t number = 0; number < scenes.size(); ++number)
+        hash.add(builder.hash(scenes[number], number, parallel));
+    return hash.value();
+}
+
+void check_threads(const std::vector<Scene>& scenes) {
+    const auto on_threads = [](std::size_t n, auto body) {
+        std::vector<std::thread> threads;
+        for (std::size_t i = 0; i < n; ++i)
+            threads.emplace_back([=] { body(i); });
+        for (std::thread& thread : threads)
+            thread.join();
+    };
+    std::uint64_t (*const jobs[])(const std::vector<Scene>&, const Parallel&) = {
+        hash_of<Options{}>,
+        hash_of<Options{.ids = IdWidth::u16}>,
+        hash_of<Options{.depth_test = true}>,
+        hash_of<Options{.depth_test = true, .slicing = Slicing::clusters}>,
+        hash_of<Options{.depth_test = true, .slicing = Slicing::z_bins}>};
+    constexpr std::size_t binners = 2 * std::size(jobs);
+    std::uint64_t made[binners];
+    on_threads(binners, [&](std::size_t i) {
+        made[i] = jobs[i / 2](scenes, i % 2 == 0 ? Parallel() : Parallel(3, on_threads));
+    });
+    for (std::size_t i = 0; i < binners; ++i)
+        if (made[i] != jobs[i / 2](scenes, {}) && failures++ < 10) std::printf("Binners at once differ\n");
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -471,5 +506,6 @@ int main(int count, char** words) {
     std::fflush(stdout);  // what traps ends the program
     scenes.resize((scenes.size() + 5) / 6, scenes.front());
     check_environments(scenes);
+    if (count > 2) check_threads(scenes);
     return failures == 0 ? 0 : 1;
 }

@@ -2,13 +2,13 @@
 # THREADS=-pthread LINK=... EXE=.exe FOLDER/lists.exe ... from the repository's root. In two units what takes long to
 # compile, the kernels, is the same for many files.
 
-# Left out: what measures time or needs a library more than doctest and GLM, and the tiers, which lists.cpp compares.
-unit := $(filter-out %/advise.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
+# Left out: what measures time or needs a library more than doctest and GLM.
+unit := $(filter-out %/advise.cpp %/matrix.cpp,$(wildcard tests/unit/*.cpp))
 one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
-headers := $(shell find include tests/unit tests/oracle tests/guest tests/split_mix.hpp bench/exact bench/pool.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
+headers := $(shell find include tests/unit tests/guest tests/platforms tests/split_mix.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
 compile = $(CXX) $(level) $(FLAGS) $(THREADS) -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
 level = -O1
-$(OUT)/lists.o $(OUT)/engine.o: level = -O2
+$(OUT)/lists.o: level = -O2
 $(OUT)/lightbin.o $(OUT)/contract.o: level = -O0
 link = $(CXX) $(FLAGS) $(THREADS) -o $@ $^ $(LINK)
 
@@ -17,8 +17,6 @@ $(OUT)/%$(EXE): $(OUT)/%.o
 $(OUT)/lists$(EXE): $(addprefix $(OUT)/,lists.o garbage.o)
 	$(link)
 $(OUT)/unit$(EXE): $(addprefix $(OUT)/,doctest_main.o unit_one.o unit_two.o)
-	$(link)
-$(OUT)/oracle$(EXE): $(addprefix $(OUT)/,campaign.o judge.o engine.o)
 	$(link)
 $(OUT)/guest$(EXE): $(addprefix $(OUT)/,doctest_main.o allocation.o exceptions.o counted_new.o)
 	$(link)
@@ -33,8 +31,6 @@ $(OUT)/%.o: tests/%.cpp
 	$(compile) $<
 $(OUT)/%.o: tests/platforms/%.cpp $(headers)
 	$(compile) $<
-$(OUT)/%.o: tests/oracle/%.cpp $(headers)
-	$(compile) -DORACLE_WITHOUT_GMP $<
 $(OUT)/%.o: tests/guest/%.cpp $(headers)
 	$(compile) $<
 $(OUT)/contract.o: tests/c/contract.c $(headers)

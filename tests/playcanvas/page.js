@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Applications of PlayCanvas beside each other, which draw the same scene under the same moving lights. By itself the
-// page shows 5,000 lights with PlayCanvas' own clusters and with lightbin's lists; pictures.mjs and bench.mjs make
-// stages of their own. An address with #still draws nothing until then.
+// page shows 5,000 lights with PlayCanvas' own clusters and with lightbin's lists; pictures.mjs makes stages of its own.
+// An address with #still draws nothing until then.
 import {load} from 'lightbin';
 import {ClusteredLights} from 'lightbin/playcanvas';
 import * as pc from 'playcanvas';
-
-let state = 1;
-const random = (low, high) => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return low + (high - low) * state / 2 ** 32;
-};
+import {difference, random, seed} from '/tests/pictures.js';
 
 const lightbin = await load();
 
@@ -83,7 +78,7 @@ class Stage {
     }
 
     async loadModel() {
-        const asset = new pc.Asset('nova', 'container', {url: '/fixtures/nova.glb'});
+        const asset = new pc.Asset('nova', 'container', {url: '/tests/fixtures/nova.glb'});
         this.app.assets.add(asset);
         const loaded = new Promise((resolve, reject) => {
             asset.ready(resolve);
@@ -116,14 +111,13 @@ class Stage {
 
     resize(width, height) { this.app.setCanvasResolution(pc.RESOLUTION_FIXED, width, height); }
 
-    /// Puts `points` and then `spots` lights in the place of those that there are, or both by turns if `mixed`, over a
-    /// square of 2 `extent` a side.
-    lights(points, spots, {range = 4, extent = 14, strength = 1, mixed = false, seed = 1} = {}) {
-        state = seed;
+    /// Puts `points` and then `spots` lights in the place of those that there are, over a square of 2 `extent` a side.
+    lights(points, spots, {range = 4, extent = 14, strength = 1} = {}) {
+        seed(1);
         for (const lamp of this.lamps) lamp.destroy();
         this.lamps = [];
         for (let i = 0; i < points + spots; ++i) {
-            const outer = random(15, 60), is_spot = mixed ? i * spots % (points + spots) < spots : i >= points;
+            const outer = random(15, 60), is_spot = i >= points;
             const lamp = this.entity('light', {
                 type: is_spot ? 'spot' : 'omni', range: random(0.5, 1) * range * (is_spot ? 2 : 1),
                 color: new pc.Color(random(0.2, 1), random(0.2, 1), random(0.2, 1)),
@@ -166,18 +160,6 @@ class Stage {
         this.app.destroy();
         this.clusters?.dispose();
     }
-}
-
-/// How two pictures differ: the greatest difference of a byte, how many pixels differ, how bright the first one is.
-function difference(a, b) {
-    let most = 0, pixels = 0, sum = 0;
-    for (let i = 0; i < a.length; i += 4) {
-        const apart = Math.max(...[0, 1, 2, 3].map(c => Math.abs(a[i + c] - b[i + c])));
-        most = Math.max(most, apart);
-        pixels += apart !== 0 ? 1 : 0;
-        sum += a[i] + a[i + 1] + a[i + 2];
-    }
-    return {most, pixels, mean: sum / (a.length * 3 / 4), length: a.length - b.length};
 }
 
 const median = list => list.toSorted((a, b) => a - b)[list.length >> 1];

@@ -2,11 +2,11 @@
 // node --test tests/playcanvas/pictures.mjs: the adapter for PlayCanvas in headless Chromium.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {open} from './browser.mjs';
+import {open, same} from '../browser.mjs';
 
 let browser, page;
 before(async () => {
-    browser = await open();
+    browser = await open(new URL('.', import.meta.url), 'Stage');
     page = browser.page;
     await page.evaluate(async () => {
         window.stages = {};
@@ -25,12 +25,6 @@ after(async () => {
     await browser.close();
     assert.deepEqual(browser.complaints, []);
 });
-
-function same({most, mean, length}, what, apart = 0) {
-    assert.ok(mean > 5, `${what}: the picture is dark: ${mean}`);
-    assert.equal(length, 0);
-    assert.ok(most <= apart, `${what}: ${most} of 255 apart`);
-}
 
 // Where PlayCanvas lists all lights it adds the same ones in the same order, but by another program.
 for (const [points, spots] of [[70, 30], [300, 49]])
@@ -84,7 +78,7 @@ test('5,000 moving lights, and more than a texture has rows: as all lights in ev
 test('each point of a light has the light in the list that the shader finds for it', async () => {
     for (const [extent, cells, depthTest] of [[14, [32, 4, 32], false], [14, [7, 9, 33], true],
                                               [4000, [10, 3, 10], true]]) {
-        const {missing, points, moved, pairs, missing_pairs} = await page.evaluate(async given => {
+        const {missing, points, moved} = await page.evaluate(async given => {
             const [extent, cells, depthTest] = given;
             const stage = new Stage('lists');
             await stage.start({width: 16, height: 16, model: false, depthTest});
@@ -104,12 +98,8 @@ test('each point of a light has the light in the list that the shader finds for 
             // The shader's arithmetic, and that of real numbers as nearly as doubles have it.
             const cell_of = (point, round) => point.map((p, axis) =>
                 Math.floor(round(round(p - begin[axis]) * scale[axis])));
-            const result = {missing: 0, points: 0, moved: 0, pairs: 0, missing_pairs: 0};
-            let state = 7;
-            const random = (low, high) => {
-                state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-                return low + (high - low) * state / 2 ** 32;
-            };
+            const result = {missing: 0, points: 0, moved: 0};
+            const {random} = await import('/tests/pictures.js');
             usedLights.slice(1).forEach(({light}, id) => {
                 const centre = light._node.getPosition().toArray(), range = light.attenuationEnd;
                 const axis = light._node.up.toArray().map(x => -x), is_spot = light.type === pc.LIGHTTYPE_SPOT;
@@ -132,27 +122,12 @@ test('each point of a light has the light in the list that the shader finds for 
                     if (!lists(x, y, z).includes(id)) ++result.missing;
                 }
             });
-            // Every cell against every point light's sphere.
-            const distance = (p, low, high) => Math.max(low - p, p - high, 0);
-            usedLights.slice(1).forEach(({light}, id) => {
-                if (light.type === pc.LIGHTTYPE_SPOT) return;
-                const centre = light._node.getPosition().toArray();
-                for (let y = 0; y < cells[1]; ++y)
-                    for (let z = 0; z < cells[2]; ++z)
-                        for (let x = 0; x < cells[0]; ++x) {
-                            const apart = [x, y, z].map((c, k) => distance(centre[k], begin[k] + c / scale[k],
-                                begin[k] + (c + 1) / scale[k]));
-                            if (Math.hypot(...apart) > light.attenuationEnd) continue;
-                            ++result.pairs;
-                            if (!lists(x, y, z).includes(id)) ++result.missing_pairs;
-                        }
-            });
             stage.destroy();
             return result;
         }, [extent, cells, depthTest]);
-        assert.ok(points > 50000 && pairs > 2000, `${points} points, ${pairs} pairs`);
+        assert.ok(points > 50000, `${points} points`);
         assert.ok(moved > 10, 'no rounding was seen');
-        assert.deepEqual([missing, missing_pairs], [0, 0]);
+        assert.equal(missing, 0);
     }
 });
 
@@ -240,7 +215,8 @@ test('shadows, cookies, directional lights and lights that change stay as PlayCa
         const results = {};
         let last;
         for (const [name, step] of Object.entries(steps)) {
-            results[name] = {...compare('own', 'lists', step), all: compare('lists', 'all', stage => stage === stages.all && step(stage))};
+            const all = stage => stage === stages.all && step(stage);
+            results[name] = {...compare('own', 'lists', step), all: compare('lists', 'all', all)};
             const now = stages.lists.draw();
             results[name].changed = last === undefined ? 1000 : difference(last, now).pixels;
             last = now;

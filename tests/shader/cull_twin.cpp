@@ -204,7 +204,7 @@ struct Tally {
 template <class Light>
 void compare(const View& view, const CullShaderOptions& options, const std::vector<Light>& made,
              const Matrix* to_view, double margin, Tally& tally) {
-    Footprints<false> projected;
+    Footprints projected;
     const auto project = [&](const auto& by_binner) {
         projected.project(machine_isa(), view, detail::as_lights(by_binner), Parallel{});
     };

@@ -5,12 +5,7 @@ import {load} from 'lightbin';
 import {ClusteredLights} from 'lightbin/three';
 import * as THREE from 'three';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
-
-let state = 1;
-const random = (low, high) => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return low + (high - low) * state / 2 ** 32;
-};
+import {difference, random, seed} from '/tests/pictures.js';
 
 const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
 document.body.append(renderer.domElement);
@@ -26,7 +21,7 @@ class Stage {
 
     async start() {
         this.lightbin = await load();
-        const {scene: model} = await new GLTFLoader().loadAsync('/fixtures/nova.glb');
+        const {scene: model} = await new GLTFLoader().loadAsync('/tests/fixtures/nova.glb');
         model.traverse(object => { if (object.isLight) object.visible = false; });
         const box = new THREE.Box3().setFromObject(model), size = box.getSize(new THREE.Vector3());
         model.scale.setScalar(24 / Math.max(size.x, size.y, size.z));
@@ -63,8 +58,8 @@ class Stage {
     }
 
     /// Puts `points` and `spots` lights in the place of those that there are.
-    lights(points, spots, {range = 4, seed = 1} = {}) {
-        state = seed;
+    lights(points, spots, {range = 4} = {}) {
+        seed(1);
         for (const lamp of this.lamps) {
             this.scene.remove(lamp);
             if (lamp.target) this.scene.remove(lamp.target);
@@ -137,21 +132,6 @@ class Stage {
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
         return pixels;
     }
-}
-
-/// How two pictures differ: the greatest difference of a byte, how many bytes differ, and how bright the first one is.
-export function difference(a, b) {
-    let most = 0, bytes = 0, sum = 0;
-    const wrong = new Set();
-    for (let i = 0; i < a.length; ++i) {
-        const apart = Math.abs(a[i] - b[i]);
-        most = Math.max(most, apart);
-        bytes += apart !== 0 ? 1 : 0;
-        if (apart > 1) wrong.add(i >> 2);
-        if (i % 4 !== 3) sum += a[i];
-    }
-    return {most, bytes, mean: sum / (a.length * 3 / 4), length: a.length - b.length, pixels: a.length / 4,
-            wrong: wrong.size};
 }
 
 const stage = new Stage();

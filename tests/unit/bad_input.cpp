@@ -85,29 +85,6 @@ TEST_CASE("lights that are switched off are no bad input, whatever their other n
         CHECK(made.radius == -1);
 }
 
-TEST_CASE("an infinite radius covers everything, for every camera") {
-    const std::vector<glm::vec4> lights = {{1, 2, 3, inf}, {1e38f, -1e38f, 1e38f, inf}, {0, 0, 0, inf}};
-    for (const glm::mat4& projection :
-         {glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), glm::infinitePerspective(1.0f, 1.5f, 0.1f),
-          glm::ortho(-20.0f, 20.0f, -10.0f, 10.0f, 0.0f, 100.0f)}) {
-        const View view = *View::from_projection(projection, {333, 217}, {.tile_size = 16});
-        CHECK(test::entries(test::lists(view, lights)) == 3 * view.tile_count());
-        CHECK(test::entries(test::lists(view, world_space(lights, glm::mat4(1.0f)))) ==
-              3 * view.tile_count());
-    }
-}
-
-TEST_CASE("a radius of zero is a point, of whatever size the scene is") {
-    const View view = test::view({641, 361}, 1);
-    for (const float z : {-0.5f, -5.0f, -900.0f}) {
-        const auto lists = test::lists(view, std::vector<glm::vec4>{{0, 0, z, 0}, {0, 0, z, 1e-40f}});
-        // The centre of an odd viewport is inside the middle pixel.
-        CHECK(test::entries(lists) == 2);
-        CHECK(lists[180 * 641 + 320].size() == 2);
-    }
-    CHECK(test::entries(test::lists(view, std::vector<glm::vec4>{{0, 0, 5, 0}, {0, 0, -2000, 0}})) == 0);
-}
-
 TEST_CASE("no lights") {
     Binner<> binner;
     const View view = test::view({960, 540}, 16);
@@ -160,34 +137,4 @@ TEST_CASE("any number of workers") {
         CHECK(test::to_lists(*binner.bin(view, lights, {}, Parallel(workers, test::backwards))) ==
               test::lists(view, lights));
     }
-}
-
-TEST_CASE("one pixel, and a tile larger than the screen") {
-    const auto lights = test::random_lights(300, 42);
-    Binner<> binner;
-    std::size_t before = 0;
-    for (const auto& [viewport, tile] :
-         {std::pair(Extent{1, 1}, 1), std::pair(Extent{1, 1}, 64), std::pair(Extent{640, 640}, 1000)}) {
-        const auto grid = binner.bin(test::view(viewport, tile), lights);
-        REQUIRE(grid);
-        CHECK(grid->ranges().size() == 1);
-        CHECK(grid->ids().size() == 300 - grid->light_counts().culled);
-        if (before != 0) CHECK(grid->ids().size() == before);  // the same frustum each time
-        before = grid->ids().size();
-    }
-}
-
-TEST_CASE("the extremes of float") {
-    constexpr float huge = std::numeric_limits<float>::max(),
-                    denormal = std::numeric_limits<float>::denorm_min();
-    const View view = test::view({640, 360}, 16);
-    const auto listed = [&](const glm::vec4& light) {
-        return test::entries(test::lists(view, std::vector<glm::vec4>{light}));
-    };
-    CHECK(listed({0, 0, 0, huge}) == view.tile_count());
-    CHECK(listed({huge, 0, 0, huge}) > 0);  // its surface passes through the eye
-    CHECK(listed({0, 0, -huge, huge}) == view.tile_count());
-    CHECK(listed({0, 0, huge, denormal}) == 0);
-    CHECK(listed({denormal, -denormal, -1, denormal}) >= 1);
-    CHECK(listed({denormal, denormal, denormal, denormal}) == 0);  // before the near plane
 }

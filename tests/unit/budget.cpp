@@ -2,10 +2,8 @@
 #include "scene.hpp"
 
 #include <lightbin/budget.hpp>
-#include <lightbin/encode.hpp>
 
 #include <limits>
-#include <tuple>
 
 using namespace lightbin;
 
@@ -161,29 +159,4 @@ TEST_CASE("a budget refuses too few weights, and takes more") {
     REQUIRE(nothing);
     CHECK(nothing->grid.ids().empty());
     CHECK(nothing->cut_in_cell.empty());
-}
-
-TEST_CASE("a copy of a grid can be shortened, and what a budget returns can be encoded and copied") {
-    const View view = test::view({320, 180}, 32);
-    const auto lights = test::random_lights(200, 5);
-    Binner<> binner;
-    const auto grid = binner.bin(view, lights);
-    REQUIRE(grid);
-    std::vector<ListRange> ranges(grid->ranges().size());
-    std::vector<std::uint32_t> ids(grid->ids().size());
-    const auto copy = grid->copy_to(ranges, ids);
-    REQUIRE(copy);
-    Budget<> budget;
-    const auto limited = budget.limit(*copy, weights_of(lights.size(), 0, 1), {.per_cell = 8});
-    REQUIRE(limited);
-    REQUIRE(limited->entries_cut > 0);
-    const auto again = limited->grid.copy_to(ranges, ids);
-    REQUIRE(again);
-    CHECK((test::to_lists(*again) == test::to_lists(limited->grid)));
-    const ListFormat format = {.encoding = ListEncoding::sentinel, .ids = IdWidth::u16, .capacity = 8};
-    std::vector<std::byte> bytes(static_cast<std::size_t>(encoded_bytes(format, ranges.size(), 0)));
-    const auto encoded = encode(limited->grid, format, bytes);
-    REQUIRE(encoded);
-    CHECK(encoded->entries_cut == 0);
-    CHECK(encoded->capacity_needed == 8);
 }

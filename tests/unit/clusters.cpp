@@ -1,10 +1,6 @@
 // Slices, and clusters as shaders look them up. That clusters miss no light, and what they list beyond it, is proven in
-// tests/oracle/clusters.cpp.
+// tests/oracle/spheres.cpp.
 #include "scene.hpp"
-
-#include <glm/common.hpp>
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/geometric.hpp>
 
 #include <limits>
 
@@ -235,42 +231,4 @@ TEST_CASE("more pairs of a light and a slice than 32 bits number are refused") {
     REQUIRE_FALSE(grid);
     CHECK(grid.error().code == ErrorCode::too_many_list_places);
     CHECK(std::string(grid.error().message()).find("fewer slices") != std::string::npos);
-}
-
-TEST_CASE("the grid of the world of docs/depth.md has each light in the boxes that it meets, and in no other") {
-    constexpr int columns = 24, rows = 12, layers = 8;
-    constexpr double side = 5, height = 3;
-    const glm::dvec3 corner(-60, -3, -30);
-    const glm::mat4 projection = glm::ortho(0.0f, 120.0f, 0.0f, 60.0f, 0.0f, 24.0f),
-                    turn = {{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};  // to (x, z, -y)
-    const View view = *View::from_projection(projection, {columns, rows}, {.tile_size = 1});
-    std::mt19937 random(5);
-    std::uniform_real_distribution<float> x(-70, 70), y(-12, 30), z(-40, 40), range(0, 12);
-    std::vector<Sphere> lights;
-    for (int i = 0; i < 400; ++i)
-        lights.push_back({x(random), y(random), z(random), range(random)});
-    Binner<Options{.depth_test = true, .slicing = Slicing::clusters}> binner;
-    const auto grid = binner.bin(view, world_space(lights, glm::translate(turn, glm::vec3(-corner))),
-                                 {.slices = *Slices::linear(layers, 0, 24)});
-    REQUIRE(grid);
-    std::size_t met = 0, missed = 0, listed_beyond = 0;
-    for (int layer = 0; layer < layers; ++layer)
-        for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < columns; ++column) {
-                const glm::dvec3 low = corner + glm::dvec3(column * side, layer * height, row * side),
-                                 high = low + glm::dvec3(side, height, side);
-                const auto ids = grid->lights_in(column, row, layer);
-                for (std::uint32_t id = 0; id < lights.size(); ++id) {
-                    const glm::dvec3 centre(lights[id].x, lights[id].y, lights[id].z);
-                    const double beyond =
-                        glm::distance(centre, glm::clamp(centre, low, high)) - lights[id].radius;
-                    const bool listed = std::binary_search(ids.begin(), ids.end(), id);
-                    met += beyond <= 0;
-                    missed += beyond <= 0 && !listed;
-                    listed_beyond += beyond > 1e-3 && listed;
-                }
-            }
-    CHECK(met > 8000);
-    CHECK(missed == 0);
-    CHECK(listed_beyond == 0);
 }

@@ -9,11 +9,11 @@ using namespace lightbin;
 
 namespace {
 
-const Parallel on_three_threads(3, test::on_threads);
+const Parallel in_three_parts(3, test::backwards);
 
 template <Options options, class LightRange>
 test::Lists joined_lists(const View& view, const LightRange& all, LightCounts* counts = nullptr) {
-    return test::id_lists<options>(view, all, on_three_threads, counts);
+    return test::id_lists<options>(view, all, in_three_parts, counts);
 }
 
 /// Appends to each list those of another kind, whose ids go on from `first`.

@@ -1,8 +1,6 @@
 // The ways lights come in: they must all give the same grid.
 #include "scene.hpp"
 
-#include <doctest/doctest.h>
-
 #include <glm/ext/matrix_transform.hpp>
 
 #include <array>
@@ -11,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <random>
-#include <type_traits>
 #include <vector>
 
 using namespace lightbin;
@@ -169,77 +166,6 @@ TEST_CASE("doubles out of the floats' range light everything; those that are bad
         CHECK(detail::sphere_around(s.x, s.y, s.z, s.w).radius < 0);
 }
 
-TEST_CASE("spots are lights wherever spheres are, and bad ones are skipped and counted") {
-    struct Lamp {
-        glm::vec3 position, direction;
-        float range, outer_cone_angle;
-    };
-    std::mt19937 random(8);
-    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 2);
-    std::vector<Lamp> lamps;
-    std::vector<Spot> spots;
-    std::vector<Sphere> spheres;
-    const auto to_spot = [](const Lamp& lamp) {
-        const glm::vec3 &p = lamp.position, &d = lamp.direction;
-        return Spot{p.x, p.y, p.z, lamp.range, d.x, d.y, d.z, std::cos(lamp.outer_cone_angle)};
-    };
-    for (const glm::vec4& s : test::random_lights(500, 9)) {
-        lamps.push_back({glm::vec3(s), {unit(random), unit(random), unit(random)}, s.w, angle(random)});
-        spots.push_back(to_spot(lamps.back()));
-        spheres.push_back(least_sphere(spots.back()));
-    }
-    const float nan = std::nanf("");
-    for (const glm::vec4& bad :
-         {glm::vec4(0, 0, 0, 0.5f), glm::vec4(nan, 0, 1, 0.5f), glm::vec4(HUGE_VALF, 0, 1, 0.5f),
-          glm::vec4(0, 0, 1, nan), glm::vec4(0, 0, 1, 1.0001f), glm::vec4(0, 0, 1, -1.0001f)}) {
-        spots.push_back({0, 0, -5, 1, bad.x, bad.y, bad.z, bad.w});
-        spots.push_back({0, 0, -5, HUGE_VALF, bad.x, bad.y, bad.z, bad.w});
-    }
-    for (const float cosine : {-1.0f, 0.0f, 0.5f, 0.9f, 1.0f})
-        for (const float bad : {nan, -HUGE_VALF}) {
-            spots.push_back({0, 0, -5, bad, 0, 0, 1, cosine});
-            spots.push_back({bad, 0, -5, 1, 0, 0, 1, cosine});
-            spots.push_back({0, bad, -5, 1, 0, 0, 1, cosine});
-            spots.push_back({0, 0, bad, HUGE_VALF, 0, 0, 1, cosine});
-            spots.push_back({0, 0, -5, -0.5f, 0, 0, 1, cosine});
-        }
-    const std::size_t bad = spots.size() - lamps.size();
-
-    const auto expected = test::lists(full_view, view_space(lamps, to_spot)),
-               expected_in_world = test::lists(full_view, world_space(lamps, full_turn, to_spot));
-    CHECK(test::lists(full_view, spots) == expected);
-    CHECK(test::lists(full_view, world_space(spots, full_turn)) == expected_in_world);
-    CHECK(test::is_superset(test::lists(full_view, spheres), expected));
-    CHECK(test::is_superset(test::lists(full_view, world_space(spheres, full_turn)), expected_in_world));
-    Binner<> binner;
-    CHECK(binner.bin(full_view, spots)->light_counts().rejected == bad);
-    CHECK(binner.bin(full_view, world_space(spots, full_turn))->light_counts().rejected == bad);
-    CHECK(test::entries(expected) < test::entries(test::lists(full_view, spheres)));
-}
-
-TEST_CASE("a spot with the cosine -1 is its sphere, whatever its axis is") {
-    std::mt19937 random(10);
-    const auto spheres = test::random_lights(500, 11);
-    const float nan = std::nanf("");
-    const glm::vec3 axes[] = {glm::vec3(0), glm::vec3(nan), glm::vec3(HUGE_VALF, 0, 0), glm::vec3(1e-45f), {0, 0, 1}};
-    std::vector<Spot> spots;
-    for (const glm::vec4& s : spheres) {
-        const glm::vec3& axis = axes[random() % 5];
-        spots.push_back({s.x, s.y, s.z, s.w, axis.x, axis.y, axis.z, -1});
-    }
-    const auto check = [&]<Options options> {
-        CHECK(test::id_lists<options>(full_view, spots) == test::id_lists<options>(full_view, spheres));
-        CHECK(test::id_lists<options>(full_view, world_space(spots, full_turn)) ==
-              test::id_lists<options>(full_view, world_space(spheres, full_turn)));
-    };
-    test::on_machine_tiers([&]<Isa isa> { check.operator()<Options{.isa = isa}>(); });
-    check.operator()<Options{.depth_test = true}>();
-    Binner<> binner;
-    CHECK(binner.bin(full_view, spots)->light_counts().rejected == 0);
-    spots = {{0, 0, -5, 1, 0, 0, 0, -0.99999994f}, {0, 0, -5, nan, 0, 0, 0, -1}, {nan, 0, -5, 1, 0, 0, 0, -1}};
-    CHECK(binner.bin(full_view, spots)->light_counts().rejected == 3);
-}
-
 // That these spheres hold the shapes, and are the least that do, is proven in tests/oracle/least_spheres.cpp.
 TEST_CASE("spheres around lights of other shapes, whole, endless or bad") {
     for (const float cosine : {0.0f, -0.0f, -0.3f, -1.0f})
@@ -266,14 +192,6 @@ TEST_CASE("spheres around lights of other shapes, whole, endless or bad") {
         CHECK(tube_sphere(a, b, radius).radius < 0);
         CHECK(rectangle_sphere(a, b, b, radius).radius < 0);
     }
-}
-
-TEST_CASE("a light whose move overflows covers everything rather than nothing") {
-    const View view = test::view({800, 600}, 32);
-    const std::vector<glm::vec4> lights = {{3e38f, 3e38f, 0, 3e38f}};
-    glm::mat4 quarter = glm::rotate(glm::mat4(1.0f), 0.785398f, glm::vec3(0, 0, 1));
-    const auto lists = test::lists(view, world_space(lights, quarter));
-    CHECK(test::entries(lists) == view.tile_count());
 }
 
 TEST_CASE("a matrix whose squares overflow loses no light") {

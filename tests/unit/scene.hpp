@@ -15,10 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace test {
@@ -50,22 +48,6 @@ template <class Visit> void on_machine_tiers(Visit visit) {
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }
-/// Such as "scalar simd128 avx2".
-inline std::string tier_names() {
-    std::string all;
-    for (const lightbin::Isa isa : machine_tiers())
-        all += (all.empty() ? "" : " ") + std::string(lightbin::to_string(isa));
-    return all;
-}
-
-/// A thread a body: what a Parallel may be given.
-inline const auto on_threads = [](std::size_t n, auto body) {
-    std::vector<std::thread> running;
-    for (std::size_t i = 0; i < n; ++i)
-        running.emplace_back(body, i);
-    for (std::thread& thread : running)
-        thread.join();
-};
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
 inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
@@ -117,14 +99,6 @@ inline Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t bo
         kinds.boxes.push_back(box);
     }
     return kinds;
-}
-
-/// Of how many random cases of the same kind one is to be run: LIGHTBIN_TEST_SHARE, such as 16 in an emulator, which is
-/// slow, and 1 where there is time. No kind is left out.
-inline std::uint32_t share_of_cases(std::uint32_t otherwise) {
-    const char* const asked = std::getenv("LIGHTBIN_TEST_SHARE");
-    const int share = asked ? std::atoi(asked) : 0;
-    return share > 0 ? static_cast<std::uint32_t>(share) : otherwise;
 }
 
 /// One list of ids a tile.

@@ -23,15 +23,18 @@ std::vector<Spot> random_spots(std::size_t count, std::uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("whole spheres as spots are binned as spheres are") {
+TEST_CASE("a spot with the cosine -1 is binned as its sphere is, whatever its axis is, and so is a very wide one") {
     const View view = test::view({1283, 721}, 16);
+    const float nan = std::nanf("");
+    const glm::vec3 axes[] = {glm::vec3(0), glm::vec3(nan), glm::vec3(HUGE_VALF, 0, 0), glm::vec3(1e-45f), {0, 0, 1}};
     std::vector<Sphere> spheres;
     std::vector<Spot> spots, beyond_138_degrees;
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(-1, 1);
     for (const glm::vec4& s : test::random_lights(700, 3)) {
+        const glm::vec3& axis = axes[random() % 5];
         spheres.push_back({s.x, s.y, s.z, s.w});
-        spots.push_back(Spot::whole(spheres.back()));
+        spots.push_back({s.x, s.y, s.z, s.w, axis.x, axis.y, axis.z, -1});
         beyond_138_degrees.push_back({s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random),
                                       std::min(unit(random), -0.75f)});
     }

@@ -72,6 +72,7 @@ template <Options options> void check_shared(const View& view, const Slices& sli
         ranges += grid->ranges().size();
         ids += grid->ids().size();
         CHECK(copy->light_counts().culled == grid->light_counts().culled);
+        CHECK(copy->ranks().order.data() == grid->ranks().order.data());
         CHECK(copy->ranges().data() == buffers.ranges.data());
         CHECK(copy->ranges().size() == ranges);
         CHECK(copy->ids().data() == buffers.ids.data());

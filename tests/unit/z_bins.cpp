@@ -2,7 +2,6 @@
 #include "scene.hpp"
 
 #include <limits>
-#include <numeric>
 
 using namespace lightbin;
 
@@ -132,39 +131,4 @@ TEST_CASE("z-bins of no light are empty, and so they are after a scene of many")
         REQUIRE(grid);
         check_bins(*grid, lights, slices);
     }
-}
-
-TEST_CASE("a copy of a grid of ranks has its ranks") {
-    const View view = test::view({64, 64}, 16);
-    const Slices slices = *Slices::linear(16, 0, 100);
-    Binner<Options{.slicing = Slicing::z_bins}> binner;
-    const auto grid = binner.bin(view, test::random_lights(50, 7), {.slices = slices});
-    REQUIRE(grid);
-    std::vector<ListRange> ranges(grid->ranges().size());
-    std::vector<std::uint32_t> ids(grid->ids().size());
-    const auto copy = grid->copy_to(ranges, ids);
-    REQUIRE(copy);
-    CHECK(copy->ranks().order.data() == grid->ranks().order.data());
-    CHECK(copy->ranks().bins.size() == 16);
-}
-
-TEST_CASE("a light at a boundary is in the bins on both sides, whatever the sign of 0") {
-    const View view = test::view({64, 64}, 16);
-    Binner<Options{.slicing = Slicing::z_bins}> binner;
-    for (const Slices& slices :
-         {*Slices::linear(8, -4, 4), *Slices::from_boundaries(std::vector<float>{-1e-40f, 0, 1})})
-        for (const float boundary : slices.boundaries())
-            for (const float radius : {0.0f, -0.0f}) {
-                const std::vector<Sphere> lights = {{0, 0, -boundary, radius}, {0, 0, 0, 100}};
-                const auto grid = binner.bin(view, lights, {.slices = slices});
-                REQUIRE(grid);
-                if (grid->ranks().order.size() < 2) continue;  // behind the eye
-                const std::uint32_t rank = grid->ranks().order[0] == 0 ? 0 : 1;
-                const int behind = slices.slice_at(boundary);
-                for (const int slice : {behind - 1, behind}) {
-                    const BinRange bin = grid->ranks().bins[static_cast<std::size_t>(slice)];
-                    CHECK(bin.least <= rank);
-                    CHECK(bin.greatest >= rank);
-                }
-            }
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The page in a browser: a server of build/web on this machine, Debian's Chromium on a software renderer, and what a
-// test does with a page.
+// The page in a browser: a server of build/web on this machine, and what a test does with a page.
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
-import {chromium} from '../../build/web-tests/node_modules/playwright-core/index.mjs';
+import {complaints_of, launch} from '../browser.mjs';
 
 const folder = new URL('../../build/web/', import.meta.url);
 export const pictures = new URL('../../build/web-tests/', import.meta.url);
@@ -16,21 +15,9 @@ async function serve() {
     return {url: String(line).match(/http:\S+/)[0], close: () => server.kill()};
 }
 
-// WebGL 2 and WebGPU both drawn by SwiftShader; nothing looked for outside of this machine.
-const flags = [
-    '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-    '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--enable-unsafe-webgpu',
-    '--use-webgpu-adapter=swiftshader',
-];
-
-// Chromium says this of its own reading of a canvas, where a program draws that and not a GPU.
-const own_warning = /GL Driver Message \(OpenGL, Performance.*GPU stall due to ReadPixels/;
-
 export class Browser {
     static async start() {
-        const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: flags});
-        return new Browser(await serve(), browser);
+        return new Browser(await serve(), await launch());
     }
 
     constructor(server, browser) {
@@ -50,12 +37,7 @@ export class Browser {
             viewport: {width, height}, hasTouch: touch, isMobile: touch, deviceScaleFactor: touch ? 2 : 1, ...options});
         test.after(() => context.close());
         const page = await context.newPage();
-        page.complaints = [];
-        page.on('pageerror', error => page.complaints.push(error.stack));
-        page.on('console', message => {
-            if (['error', 'warning'].includes(message.type()) && !own_warning.test(message.text()))
-                page.complaints.push(`${message.type()}: ${message.text()}`);
-        });
+        page.complaints = complaints_of(page);
         await page.addInitScript(before);
         await page.goto(`${this.server.url}#${hash}`);
         await page.waitForFunction(() => performance.getEntriesByName('first picture').length > 0

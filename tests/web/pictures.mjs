@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every scene, depth method and renderer of the page draws what every light in every fragment draws, byte by byte; and
-// a list that lacks a light is found.
+// Every scene, depth method and renderer of the page draws what every light in every fragment draws, byte by byte, from
+// the first picture on; and a list that lacks a light is found.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {Browser, compare, mean_difference, picture, text_of, wait_for_text} from './browser.mjs';
@@ -56,3 +56,27 @@ test('WebGL 2 and WebGPU draw the same scenes', async t => {
         assert.ok(mean_difference(webgl, webgpu) < 1, `${scene}: ${mean_difference(webgl, webgpu)} apart`);
     }
 });
+
+// The first picture of a renderer, whose lists have room for 1,024 entries, and the same by every light.
+async function draw_first(method) {
+    const [{load_lighting}, {WebGpu}, {compare}] = await Promise.all(
+        ['lighting', 'webgpu', 'checks'].map(name => import(`./${name}.js`)));
+    const lighting = await load_lighting(), renderer = await WebGpu.create(document.createElement('canvas'));
+    const {triangles, glass, has_spots, cameras: [camera]} = lighting.scenes.make('street');
+    renderer.set_scene({triangles, glass, has_spots});
+    const settings = {camera, width: 320, height: 180, tile_size: 8, method, exposure: 1};
+    const {different} = await compare(renderer, lighting, settings, document.createElement('canvas'));
+    const {entries, in_view, rejected, longest} = await renderer.draw(lighting, {...settings, look: 'lit', drop: 3});
+    return {different, entries, in_view, rejected, longest, glass: glass.length, lost: renderer.lost};
+}
+
+for (const method of ['clusters', 'z_bounds'])
+    test(`${method}: the first picture shows no lists that were cut`, async t => {
+        const page = await browser.open(t, 'lights=16&size=5&move=0');
+        const {different, entries, in_view, rejected, longest, glass, lost} = await page.evaluate(draw_first, method);
+        assert.equal(different, 0);
+        assert.ok(entries > 1024 && glass > 0, `${entries} entries`);
+        assert.ok(rejected === 0 && in_view > longest && longest > 1, `${in_view} in view, ${longest} in the longest`);
+        assert.equal(lost, null);
+        assert.deepEqual(page.complaints, []);
+    });

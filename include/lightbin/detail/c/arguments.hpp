@@ -27,123 +27,44 @@ inline lightbin_result refused(lightbin_error error, const char* name, std::uint
     return {error, 0, name, needed, available};
 }
 
-/// The C side's number of each ErrorCode, in the order of their declaration. Numbers never change: a new ErrorCode gets
-/// the next free number, wherever it is declared.
-inline constexpr lightbin_error error_numbers[] = {
-    LIGHTBIN_MATRIX_NOT_FINITE,
-    LIGHTBIN_NOT_A_PROJECTION,
-    LIGHTBIN_PROJECTION_TRANSPOSED,
-    LIGHTBIN_EYE_NOT_AT_ORIGIN,
-    LIGHTBIN_IMAGE_AXES_ROTATED,
-    LIGHTBIN_OBLIQUE_DEPTH,
-    LIGHTBIN_NO_NEAR_PLANE,
-    LIGHTBIN_NEAR_PLANE_TOO_CLOSE,
-    LIGHTBIN_DEPTH_RANGE_NOT_FINITE,
-    LIGHTBIN_DEGENERATE_SCALE,
-    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE,
-    LIGHTBIN_VIEWPORT_OUT_OF_RANGE,
-    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE,
-    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE,
-    LIGHTBIN_VIEW_MATRIX_TRANSPOSED,
-    LIGHTBIN_TOO_MANY_LIGHTS,
-    LIGHTBIN_TOO_MANY_ENTRIES,
-    LIGHTBIN_TOO_MANY_LIST_PLACES,
-    LIGHTBIN_RANGE_BUFFER_TOO_SMALL,
-    LIGHTBIN_ID_BUFFER_TOO_SMALL,
-    LIGHTBIN_GRIDS_DIFFER,
-    LIGHTBIN_IDS_ARE_RANKS,
-    LIGHTBIN_Z_BOUNDS_TOO_SMALL,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL,
-    LIGHTBIN_SAMPLES_OUT_OF_RANGE,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL,
-    LIGHTBIN_NO_SLICES,
-    LIGHTBIN_SLICE_RANGE_EMPTY,
-    LIGHTBIN_SLICES_DO_NOT_ASCEND,
-    LIGHTBIN_TOO_MANY_CELLS,
-    LIGHTBIN_TOO_FEW_WEIGHTS,
-    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL,
-    LIGHTBIN_IDS_TOO_NARROW,
-    LIGHTBIN_LIST_BUFFER_TOO_SMALL,
-    LIGHTBIN_CAPACITY_UNKNOWN,
-    LIGHTBIN_BLOCK_SIZE_UNKNOWN,
-    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL,
-    LIGHTBIN_NO_STORAGE_BUFFERS,
-    LIGHTBIN_NO_TEXEL_BUFFERS,
-    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
-    LIGHTBIN_SLOT_OUT_OF_RANGE,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE,
-    LIGHTBIN_NO_SETS,
-    LIGHTBIN_NO_PUSH_CONSTANTS,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER,
-    LIGHTBIN_NO_WAVE_OPERATIONS,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE,
-    LIGHTBIN_BINDINGS_OVERLAP,
-    LIGHTBIN_NOT_A_PREFIX,
-    LIGHTBIN_NO_CULL_OF_BOXES,
-    LIGHTBIN_TOO_MANY_SLICES,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS,
-    LIGHTBIN_SCRATCH_TOO_LARGE,
-};
-static_assert(sizeof error_numbers / sizeof *error_numbers ==
-                  sizeof detail::error_sentences / sizeof *detail::error_sentences,
-              "lightbin: an ErrorCode has no number in lightbin.h");
-
 inline lightbin_result refused(const Error& error) {
-    return refused(error_numbers[static_cast<int>(error.code)], "", error.needed, error.available);
+    return refused(static_cast<lightbin_error>(error.code), "", error.needed, error.available);
 }
 
-/// Returns the sentence of an error that only the C side has.
-inline const char* sentence_of(std::int32_t error) {
-    switch (error) {
-    case LIGHTBIN_OK:
-        return "no error";
-    case LIGHTBIN_OUT_OF_MEMORY:
-        return "there is not enough memory";
-    case LIGHTBIN_NULL_ARGUMENT:
-        return "this pointer is null and must not be";
-    case LIGHTBIN_WRONG_SIZE:
-        return "`size` must be sizeof of the struct, {available}, and is {needed}; of a newer lightbin's "
-               "struct all that this one does not know must be 0";
-    case LIGHTBIN_LEFT_OUT:
-        return "lightbin was compiled without this: the define of this name leaves it out";
-    case LIGHTBIN_NOT_A_VALUE:
-        return "{given} is none of the values that there are for it";
-    case LIGHTBIN_STRIDE_TOO_SMALL:
-        return "a light's floats are {needed} bytes, and the stride from one light to the next is "
-               "{available}";
-    case LIGHTBIN_NO_SLICES_GIVEN:
-        return "this binner slices depth: give the input `slices`";
-    case LIGHTBIN_NO_BOUNDS_GIVEN:
-        return "this binner's depth test needs Z bounds: give the input `bounds`";
-    case LIGHTBIN_NOT_READ:
-        return "the options do not read this input: bounds want a depth test, and slices a slicing; "
-               "clusters read no bounds, and lights in view space no matrix";
-    case LIGHTBIN_BUFFER_TOO_SMALL:
-        return "this memory holds {available} elements, and {needed} are needed";
-    case LIGHTBIN_OTHER_MEMORY:
-        return "this grid must be in the memory that the next view's lists are to be copied to, at its "
-               "beginning";
-    case LIGHTBIN_NO_SUCH_ISA:
-        return "this machine does not run these vectors, or the library was compiled without them";
-    case LIGHTBIN_CALLBACK_THREW:
-        return "a callback of the program threw a C++ exception";
-    }
-    return "unknown error";
-}
+/// The sentences of the errors that only the C side has, in the order of their numbers.
+inline constexpr const char* sentences[] = {
+    "no error",
+    "there is not enough memory",
+    "this pointer is null and must not be",
+    ("`size` must be sizeof of the struct, {available}, and is {needed}; of a newer lightbin's struct all that this one "
+     "does not know must be 0"),
+    "lightbin was compiled without this: the define of this name leaves it out",
+    "{given} is none of the values that there are for it",
+    "a light's floats are {needed} bytes, and the stride from one light to the next is {available}",
+    "this binner slices depth: give the input `slices`",
+    "this binner's depth test needs Z bounds: give the input `bounds`",
+    ("the options do not read this input: bounds want a depth test, and slices a slicing; clusters read no bounds, and "
+     "lights in view space no matrix"),
+    "this memory holds {available} elements, and {needed} are needed",
+    "a callback of the program threw a C++ exception",
+    "this grid must be in the memory that the next view's lists are to be copied to, at its beginning",
+    "this machine does not run these vectors, or the library was compiled without them",
+};
+static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_NO_SUCH_ISA + 1);
 
 /// Returns the sentence of a result, with the name and the numbers filled in.
 inline Text text_of(const lightbin_result& result) {
-    for (std::size_t code = 0; code < sizeof error_numbers / sizeof *error_numbers; ++code)
-        if (error_numbers[code] == result.error)
-            return Error{static_cast<ErrorCode>(code), result.needed, result.available}.message();
+    if (result.error >= LIGHTBIN_MATRIX_NOT_FINITE && result.error <= LIGHTBIN_SCRATCH_TOO_LARGE)
+        return Error{static_cast<ErrorCode>(result.error), result.needed, result.available}.message();
     Text text;
     if (result.name != nullptr && *result.name != 0) {
         text.append(result.name);
         text.append(": ");
     }
-    text.append(
-        Error{ErrorCode{}, result.needed, result.available}.message(sentence_of(result.error)).c_str());
+    const bool known = 0 <= result.error && result.error <= LIGHTBIN_NO_SUCH_ISA;
+    text.append(Error{ErrorCode{}, result.needed, result.available}
+                    .message(known ? sentences[result.error] : "unknown error")
+                    .c_str());
     return text;
 }
 
@@ -187,26 +108,50 @@ template <class Struct> lightbin_result read(const Struct* given, Struct& known,
 }
 
 /// Copies a struct to the caller's, as far as that has the members. The caller's keeps its `size`, which was checked.
-template <class Struct> void write(const Struct& known, Struct* to) {
+template <class Struct> lightbin_result write(const std::type_identity_t<Struct>& known, Struct* to) {
     const std::uint32_t size = to->size;
     std::memcpy(to, &known, detail::min_of<std::size_t>(size, sizeof known));
     to->size = size;
+    return succeeded();
 }
 
-/// Returns why a number is refused that must be 0 to `greatest`.
-inline lightbin_result check_value(std::int32_t value, std::int32_t greatest, const char* name) {
-    if (0 <= value && value <= greatest) return succeeded();
-    return refused(LIGHTBIN_NOT_A_VALUE, name, static_cast<std::uint64_t>(std::int64_t{value}),
-                   static_cast<std::uint64_t>(greatest));
+/// Returns why a number that a caller gave is refused.
+inline lightbin_result not_a_value(std::int32_t given, const char* name) {
+    return refused(LIGHTBIN_NOT_A_VALUE, name, static_cast<std::uint64_t>(std::int64_t{given}));
 }
 
+// read_member() reads a member of a caller's struct: 0 leaves the default. Enums have the same numbers on both sides, and
+// to_string() has a name for each.
+inline lightbin_result read_member(std::int32_t given, bool& known, const char*) {
+    known = given != 0;
+    return succeeded();
+}
+template <class Number>
+requires std::is_integral_v<Number> lightbin_result read_member(Number given, Number& known, const char*) {
+    if (given != 0) known = given;
+    return succeeded();
+}
+template <class Enum>
+requires std::is_enum_v<Enum> lightbin_result read_member(std::int32_t given, Enum& known, const char* name) {
+    if (given != 0) known = static_cast<Enum>(given);
+    return 0 <= given && given < 256 && *to_string(known) != '?' ? succeeded() : not_a_value(given, name);
+}
+inline lightbin_result read_member(const lightbin_matrix& given, Matrix& known, const char* name) {
+    if (given.floats == nullptr && given.doubles == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name);
+    if (given.layout < 0 || given.layout > LIGHTBIN_ROW_VECTORS) return not_a_value(given.layout, name);
+    const auto layout = static_cast<MatrixLayout>(given.layout);
+    known = given.floats != nullptr ? matrix(given.floats, layout) : matrix(given.doubles, layout);
+    return succeeded();
+}
 /// Reads the instruction set that a caller asks for, which this build must have and this machine must run.
-inline lightbin_result read_isa(std::int32_t value, Isa& isa, const char* name) {
-    const lightbin_result result = check_value(value, LIGHTBIN_AVX512, name);
-    if (result.error != LIGHTBIN_OK || value == LIGHTBIN_WIDEST) return result;
-    isa = static_cast<Isa>(value - LIGHTBIN_SCALAR);
-    return machine_isa(isa) == isa ? result : refused(LIGHTBIN_NO_SUCH_ISA, name);
+inline lightbin_result read_member(std::int32_t given, Isa& known, const char* name) {
+    const lightbin_result result = read_member<Isa>(given, known, name);
+    return result.error != LIGHTBIN_OK || given == LIGHTBIN_WIDEST || machine_isa(known) == known
+               ? result
+               : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
+/// Reads the member of this name from `given` to `known`.
+#define LIGHTBIN_MEMBER(name) read_member(given.name, known.name, "options." #name)
 
 /// Returns the first of several results that is an error, or a success.
 template <class... Results> lightbin_result first_error(const Results&... results) {
@@ -215,19 +160,20 @@ template <class... Results> lightbin_result first_error(const Results&... result
     return first;
 }
 
-/// Returns the matrix that the caller's sixteen numbers make, or why they are refused.
-inline lightbin_result read_matrix(const lightbin_matrix& given, Matrix& matrix, const char* name) {
-    if (given.floats == nullptr && given.doubles == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name);
-    const lightbin_result result = check_value(given.layout, LIGHTBIN_ROW_VECTORS, name);
-    if (result.error != LIGHTBIN_OK) return result;
-    const auto layout = static_cast<MatrixLayout>(given.layout);
-    matrix = given.floats != nullptr ? lightbin::matrix(given.floats, layout)
-                                     : lightbin::matrix(given.doubles, layout);
-    return result;
+/// A pointer that a call needs, and its name.
+struct Needed {
+    const void* pointer;
+    const char* name;
+};
+inline lightbin_result check_pointers(std::initializer_list<Needed> pointers) {
+    for (const Needed& each : pointers)
+        if (each.pointer == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, each.name);
+    return succeeded();
 }
 
-/// Calls body(), which returns a lightbin_result. No exception leaves.
-template <class Body> lightbin_result guarded(const Body& body) {
+/// Returns `checked` if that is an error, else what body() returns, a lightbin_result. No exception leaves.
+template <class Body> lightbin_result call_if(const lightbin_result& checked, const Body& body) {
+    if (checked.error != LIGHTBIN_OK) return checked;
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
     try {
         return body();
@@ -243,13 +189,29 @@ template <class Body> lightbin_result guarded(const Body& body) {
 #endif
 }
 
-/// Makes a handle, whose member `value` is Value(arguments...).
+/// Makes a handle, whose members are made of `arguments`.
 template <class Handle, class... Arguments>
 lightbin_result make_handle(Handle** handle, Arguments&&... arguments) {
-    return guarded([&] {
-        *handle = new Handle{static_cast<Arguments&&>(arguments)...};
-        return succeeded();
-    });
+    *handle = new Handle{static_cast<Arguments&&>(arguments)...};
+    return succeeded();
+}
+
+/// Returns the address of objects of one side as that of the other side's, which have the same members in the same order.
+template <class To, class From> auto* same_layout(From* from) {
+    static_assert(sizeof(To) == sizeof(From) && alignof(To) == alignof(From));
+    return reinterpret_cast<std::conditional_t<std::is_const_v<From>, const To, To>*>(from);
+}
+
+/// Copies `needed` items to the caller's memory and writes their number to *count, if that is given.
+template <class From, class To>
+lightbin_result write_items(const From* from, std::size_t needed, To* to, std::size_t capacity,
+                            std::size_t* count, const char* name) {
+    static_assert(sizeof(From) == sizeof(To));
+    if (count != nullptr) *count = needed;
+    if (to == nullptr && needed > 0 && capacity > 0) return refused(LIGHTBIN_NULL_ARGUMENT, name);
+    if (capacity < needed) return refused(LIGHTBIN_BUFFER_TOO_SMALL, name, needed, capacity);
+    if (needed > 0) std::memcpy(to, from, needed * sizeof *from);
+    return succeeded();
 }
 
 }  // namespace c

@@ -2,56 +2,101 @@
 // The C side's functions that make lists.
 #pragma once
 
+#include <lightbin/binner.hpp>
 #include <lightbin/coverage.hpp>
-#include <lightbin/detail/c/any_binner.hpp>
+#include <lightbin/detail/c/lights.hpp>
 #include <lightbin/detail/c/views.hpp>
 
 #include <atomic>
 
+namespace lightbin {
+namespace c {
+
+/// Returns the name of the define that leaves out the code for options, or null if the program has it.
+constexpr const char* left_out([[maybe_unused]] const Options& options) {
+#if defined(LIGHTBIN_NO_U16)
+    if (options.ids == IdWidth::u16) return "LIGHTBIN_NO_U16";
+#endif
+#if defined(LIGHTBIN_NO_DEPTH_TEST)
+    if (options.depth_test) return "LIGHTBIN_NO_DEPTH_TEST";
+#endif
+#if defined(LIGHTBIN_NO_CLUSTERS)
+    if (options.slicing == Slicing::clusters) return "LIGHTBIN_NO_CLUSTERS";
+#endif
+#if defined(LIGHTBIN_NO_Z_BINS)
+    if (options.slicing == Slicing::z_bins) return "LIGHTBIN_NO_Z_BINS";
+#endif
+    return nullptr;
+}
+
+/// How a binner works whose options are set at run time. So the stages stand in the program once, and not once for each
+/// combination of options as those of Binners do; only the kernels do. See detail::FixedHow.
+struct AnyHow {
+    static constexpr detail::OptionCode may = {
+        .u16 = left_out(Options{.ids = IdWidth::u16}) == nullptr,
+        .u32 = true,
+        .depth_test = left_out(Options{.depth_test = true}) == nullptr,
+        .clusters = left_out(Options{.slicing = Slicing::clusters}) == nullptr,
+        .z_bins = left_out(Options{.slicing = Slicing::z_bins}) == nullptr};
+    Options is;
+
+    template <class Id, detail::LightKind kind> detail::ListKernels<Id> kernels() const {
+        if constexpr (may.depth_test)
+            if (is.depth_test) {
+                if constexpr (may.clusters)
+                    if (is.slicing == Slicing::clusters) return detail::list_kernels<Id, true, true, kind>();
+                return detail::list_kernels<Id, true, false, kind>();
+            }
+        return detail::list_kernels<Id, false, false, kind>();
+    }
+
+    template <class Source, class Body> auto with_kind(const Source& lights, const Body& body) const {
+        using detail::LightKind;
+        unsigned kinds = 0;  // a bit for each kind that is there
+        detail::for_each_array(lights, [&]<class Array>(const Array& array) {
+            kinds |= unsigned{array.array.size() > 0} << static_cast<int>(Array::kind);
+        });
+        const auto alone = [=](LightKind kind) { return kinds == 1u << static_cast<int>(kind); };
+        if constexpr (detail::kinds_have_spots)
+            if (alone(LightKind::spot)) return body.template operator()<LightKind::spot>();
+        if constexpr (detail::kinds_have_boxes)
+            if (alone(LightKind::box)) return body.template operator()<LightKind::box>();
+        if constexpr (!spheres_alone)
+            if (kinds != 0 && !alone(LightKind::sphere)) return body.template operator()<LightKind::mixed>();
+        return body.template operator()<LightKind::sphere>();
+    }
+};
+
+}  // namespace c
+}  // namespace lightbin
+
 struct lightbin_binner {
-    lightbin::c::AnyBinner value;
+    lightbin::c::AnyHow how;
+    lightbin::detail::Stages<lightbin::c::AnyHow> stages = {};
 };
 
 namespace lightbin {
 namespace c {
 
 /// Writes a LightGrid to the caller's struct.
-template <class Id> void write_grid(const LightGrid<Id>& from, lightbin_grid* to) {
-    static_assert(sizeof(ListRange) == sizeof(lightbin_range) &&
-                  sizeof(BinRange) == sizeof(lightbin_bin_range));
+template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightbin_grid* to) {
     const LightCounts& counts = from.light_counts();
     const LightRanks& ranks = from.ranks();
-    lightbin_grid grid = {};
-    grid.lights = counts.lights;
-    grid.rejected = counts.rejected;
-    grid.culled = counts.culled;
-    grid.first_spot = counts.first_spot;
-    grid.first_box = counts.first_box;
-    grid.order = ranks.order.data();
-    grid.bins = reinterpret_cast<const lightbin_bin_range*>(ranks.bins.data());
-    grid.order_count = ranks.order.size();
-    grid.bin_count = ranks.bins.size();
-    grid.tiles_x = from.tiles_x();
-    grid.tiles_y = from.tiles_y();
-    grid.slices = from.slices();
-    grid.ranges = reinterpret_cast<const lightbin_range*>(from.ranges().data());
-    grid.ids = from.ids().data();
-    grid.range_count = from.ranges().size();
-    grid.id_count = from.ids().size();
-    grid.id_bytes = sizeof(Id);
-    write(grid, to);
+    return write({0, from.tiles_x(), from.tiles_y(), from.slices(), same_layout<lightbin_range>(from.ranges().data()),
+                  from.ids().data(), from.ranges().size(), from.ids().size(), sizeof(Id), counts.lights,
+                  counts.rejected, counts.culled, ranks.order.data(), same_layout<lightbin_bin_range>(ranks.bins.data()),
+                  ranks.order.size(), ranks.bins.size(), counts.first_spot, counts.first_box},
+                 to);
 }
 
-/// Calls body(Id()) with the type of ids that options ask for.
-template <class Body> lightbin_result with_id([[maybe_unused]] const Options& options, const Body& body) {
-#if !defined(LIGHTBIN_NO_U16)
-    if (options.ids == IdWidth::u16) return body(std::uint16_t());
+#if defined(LIGHTBIN_NO_THREADS)
+using Threads = Serial;
+#else
+using Threads = Parallel;
 #endif
-    return body(std::uint32_t());
-}
 
-/// Runs tasks on the caller's threads. What a task throws is thrown again on the thread that called run(), as
-/// exceptions must not pass through the caller's functions.
+/// Runs tasks on the caller's threads. Exceptions must not pass through the caller's functions: where a task throws,
+/// memory has run out, as the library calls nothing of the program there, and run() throws std::bad_alloc.
 class CallersThreads {
 public:
     explicit CallersThreads(const lightbin_threads& threads) : threads_(threads) {}
@@ -61,7 +106,7 @@ public:
         threads_.run(
             threads_.user, count, [](void* at, std::size_t i) { static_cast<Context<Body>*>(at)->run(i); },
             &context);
-        #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
         if (context.failed) throw std::bad_alloc();
 #endif
     }
@@ -72,7 +117,7 @@ private:
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
             try {
                 body(i);
-            } catch (...) {  // only memory can run out: the library calls nothing of the program here
+            } catch (...) {
                 failed = true;
             }
 #else
@@ -87,68 +132,26 @@ private:
     lightbin_threads threads_;
 };
 
-/// Checks the caller's threads, null for none, and calls body(threads) with them.
+/// Checks the caller's threads, null for none, and calls body(threads) with them if `checked` is no error.
 template <class Body>
-lightbin_result with_threads(const lightbin_threads* given, const char* name, const char* name_of_run,
-                             const Body& body) {
+lightbin_result with_threads(lightbin_result checked, const lightbin_threads* given, const char* name,
+                             const char* name_of_run, const Body& body) {
+    if (given == nullptr) return call_if(checked, [&] { return body(Threads()); });
     lightbin_threads threads = {};
-    if (given == nullptr) return guarded([&] { return body(Threads()); });
-    const lightbin_result result = read(given, threads, name);
-    if (result.error != LIGHTBIN_OK) return result;
-    if (threads.run == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name_of_run);
+    checked = first_error(checked, read(given, threads, name));
+    if (checked.error == LIGHTBIN_OK && threads.run == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name_of_run);
 #if defined(LIGHTBIN_NO_THREADS)
-    return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS");
+    return first_error(checked, refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS"));
 #else
     const CallersThreads run(threads);
-    return guarded([&] { return body(Threads(threads.workers, run)); });
+    return call_if(checked, [&] { return body(Threads(threads.workers, run)); });
 #endif
 }
 
-/// Checks the arguments of a binner's call and calls body(call) with them.
-template <class Body>
-lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
-                          const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
-                          const Body& body) {
-    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    CallLights lights;
-    lightbin_inputs inputs = {};
-    lightbin_result result = read_lights(given_lights, lights);
-    if (result.error == LIGHTBIN_OK && given_inputs != nullptr) result = read(given_inputs, inputs, "inputs");
-    if (result.error != LIGHTBIN_OK) return result;
-    const bool with_slices = reads_slices(binner->value.options()),
-               with_bounds = reads_bounds(binner->value.options());
-    if (with_slices && inputs.slices == nullptr) return refused(LIGHTBIN_NO_SLICES_GIVEN, "inputs.slices");
-    if (with_bounds && inputs.bounds == nullptr) return refused(LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds");
-    if (!with_slices && inputs.slices != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.slices");
-    if (!with_bounds && inputs.bounds != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.bounds");
-    std::optional<ZBounds> given_bounds;
-    if (with_bounds) result = read_bounds(inputs.bounds, view->value, given_bounds.emplace());
-    const ZBounds& bounds = with_bounds ? *given_bounds : no_bounds;
-    if (result.error != LIGHTBIN_OK) return result;
-    const Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
-    return with_threads(inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
-        return body(Call{view->value, lights, slices, bounds, threads});
-    });
-}
-
-/// Returns the options that a caller asks for.
-inline lightbin_result read_options(const lightbin_binner_options* given, Options& options) {
-    lightbin_binner_options known = {};
-    lightbin_result result = given != nullptr ? read(given, known, "options") : succeeded();
-    if (result.error == LIGHTBIN_OK)
-        result = first_error(check_value(known.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
-    if (result.error != LIGHTBIN_OK) return result;
-    if (known.ids != LIGHTBIN_U32 && known.ids != LIGHTBIN_U16)
-        return refused(LIGHTBIN_NOT_A_VALUE, "options.ids",
-                       static_cast<std::uint64_t>(std::int64_t{known.ids}));
-    options = {.ids = known.ids == LIGHTBIN_U16 ? IdWidth::u16 : IdWidth::u32,
-               .depth_test = known.depth_test != 0,
-               .slicing = static_cast<Slicing>(known.slicing)};
-    result = read_isa(known.isa, options.isa, "options.isa");
-    if (result.error != LIGHTBIN_OK) return result;
-    const char* const define = left_out(options);
-    return define != nullptr ? refused(LIGHTBIN_LEFT_OUT, define) : result;
+/// Returns why an input is refused that must be given if the options read it, and else must not be.
+inline lightbin_result check_input(bool is_read, const void* given, lightbin_error if_missing, const char* name) {
+    if (is_read == (given != nullptr)) return succeeded();
+    return refused(is_read ? if_missing : LIGHTBIN_NOT_READ, name);
 }
 
 }  // namespace c
@@ -159,10 +162,18 @@ extern "C" {
 lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                        lightbin_binner** binner) {
     using namespace lightbin::c;
-    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
+    lightbin_binner_options given = {};
     lightbin::Options known;
-    const lightbin_result result = read_options(options, known);
-    return result.error != LIGHTBIN_OK ? result : make_handle(binner, known);
+    lightbin_result result = check_pointers({{binner, "binner"}});
+    if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
+    if (result.error == LIGHTBIN_OK)
+        result = first_error(LIGHTBIN_MEMBER(ids), LIGHTBIN_MEMBER(depth_test), LIGHTBIN_MEMBER(slicing),
+                             LIGHTBIN_MEMBER(isa));
+    if (result.error == LIGHTBIN_OK && known.ids == lightbin::IdWidth::u8)
+        result = not_a_value(given.ids, "options.ids");
+    if (const char* const define = left_out(known); result.error == LIGHTBIN_OK && define != nullptr)
+        result = refused(LIGHTBIN_LEFT_OUT, define);
+    return call_if(result, [&] { return make_handle(binner, AnyHow{known}); });
 }
 
 void lightbin_binner_destroy(lightbin_binner* binner) {
@@ -170,18 +181,36 @@ void lightbin_binner_destroy(lightbin_binner* binner) {
 }
 
 lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
-                             const lightbin_lights* lights, const lightbin_inputs* inputs,
+                             const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
                              lightbin_grid* grid) {
     using namespace lightbin::c;
-    const lightbin_result result = check_size(grid, "grid");
+    CallLights lights;
+    lightbin_inputs inputs = {};
+    lightbin::ZBounds bounds;
+    lightbin_result result =
+        first_error(check_size(grid, "grid"), check_pointers({{binner, "binner"}, {view, "view"}}),
+                    read_lights(given_lights, lights));
+    if (result.error == LIGHTBIN_OK && given_inputs != nullptr) result = read(given_inputs, inputs, "inputs");
     if (result.error != LIGHTBIN_OK) return result;
-    return with_call(binner, view, lights, inputs, [&](const Call& call) {
-        return with_id(binner->value.options(), [&](auto id) {
-            const auto made = binner->value.template bin<decltype(id)>(call);
-            if (!made) return refused(made.error());
-            write_grid(*made, grid);
-            return succeeded();
-        });
+    const lightbin::Options& options = binner->how.is;
+    result = first_error(
+        check_input(options.slicing != lightbin::Slicing::none, inputs.slices, LIGHTBIN_NO_SLICES_GIVEN,
+                    "inputs.slices"),
+        check_input(options.depth_test && options.slicing != lightbin::Slicing::clusters, inputs.bounds,
+                    LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
+    if (result.error == LIGHTBIN_OK && inputs.bounds != nullptr)
+        result = read_bounds(inputs.bounds, view->value, bounds);
+    return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
+        const auto bin = [&]<class Id>(Id) {
+            const auto made = binner->stages.template bin<Id>(
+                binner->how, view->value, lights.all(), inputs.slices != nullptr ? &inputs.slices->value : nullptr,
+                bounds, threads);
+            return made ? write_grid(*made, grid) : refused(made.error());
+        };
+#if !defined(LIGHTBIN_NO_U16)
+        if (options.ids == lightbin::IdWidth::u16) return bin(std::uint16_t());
+#endif
+        return bin(std::uint32_t());
     });
 }
 
@@ -190,23 +219,13 @@ lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_ligh
                                   const lightbin_threads* given_threads, lightbin_light_coverage* coverage,
                                   std::size_t capacity, std::size_t* count) {
     using namespace lightbin::c;
-    static_assert(sizeof(lightbin::LightCoverage) == sizeof(lightbin_light_coverage));
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
     CallLights lights;
-    const lightbin_result result = read_lights(given_lights, lights);
-    if (result.error != LIGHTBIN_OK) return result;
-    return with_threads(given_threads, "threads", "threads.run", [&](const Threads& threads) {
-        const lightbin::detail::DefaultFloatEnvironment environment;
-        if (const auto error = lightbin::detail::refuse(lights.all())) return refused(*error);
-        lightbin::Footprints<true> footprints;
-        footprints.project(lightbin::machine_isa(), view->value, lights.all(), threads);
-        *count = footprints.visible();
-        if (capacity < *count) return refused(LIGHTBIN_BUFFER_TOO_SMALL, "coverage", *count, capacity);
-        using lightbin::detail::LightKind;
-        lightbin::detail::find_coverage<spheres_alone ? LightKind::sphere : LightKind::mixed>(
-            view->value, footprints, threads, reinterpret_cast<lightbin::LightCoverage*>(coverage));
-        return succeeded();
+    const lightbin_result result =
+        first_error(check_pointers({{view, "view"}, {count, "count"}}), read_lights(given_lights, lights));
+    return with_threads(result, given_threads, "threads", "threads.run", [&](const Threads& threads) {
+        const auto made = lightbin::coverage(view->value, lights.all(), threads);
+        if (!made) return refused(made.error());
+        return write_items(made->data(), made->size(), coverage, capacity, count, "coverage");
     });
 }
 #endif

@@ -5,8 +5,8 @@
 //
 //   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights; the functions that make boxes
 //   LIGHTBIN_NO_U16                                                 16-bit ids
-//   LIGHTBIN_NO_DEPTH_TEST                                          lightbin_binner_options::depth_test
-//   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings
+//   LIGHTBIN_NO_DEPTH_TEST                                          lightbin_binner_options::depth_test, reduce_depth()
+//   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings; with LIGHTBIN_NO_CULL_SHADERS all slices
 //   LIGHTBIN_NO_COVERAGE                                            lightbin_coverage()
 //   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
 //   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads
@@ -21,6 +21,9 @@
 #endif
 #if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_CULL_SHADERS)
 #define LIGHTBIN_NO_CULL_SHADERS 1
+#endif
+#if defined(LIGHTBIN_NO_CLUSTERS) && defined(LIGHTBIN_NO_Z_BINS) && defined(LIGHTBIN_NO_CULL_SHADERS)
+#define LIGHTBIN_WITHOUT_SLICES 1
 #endif
 
 #include <lightbin/detail/c/grids.hpp>

@@ -22,19 +22,13 @@ template <class To, class From> To same_numbers(const From& from) {
     return to;
 }
 
-/// A pointer of the caller, and the parameter's name.
-struct Needed {
-    const void* pointer;
-    const char* name;
-};
-
 /// Writes the light that make() returns to the caller's struct, or says which of the pointers is null.
 template <class Light, class Make>
 lightbin_result make_light(std::initializer_list<Needed> pointers, Light* to, const Make& make) {
-    for (const Needed& each : pointers)
-        if (each.pointer == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, each.name);
-    *to = same_numbers<Light>(make());
-    return succeeded();
+    return call_if(check_pointers(pointers), [&] {
+        *to = same_numbers<Light>(make());
+        return succeeded();
+    });
 }
 
 inline detail::Triple triple_at(const float* from) {
@@ -84,9 +78,9 @@ lightbin_result lightbin_whole_box(const float* centre, const float* half_axes, 
 
 lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side, lightbin_box* box) {
     using namespace lightbin;
-    if (transform == nullptr) return c::refused(LIGHTBIN_NULL_ARGUMENT, "transform");
     Matrix matrix;
-    const lightbin_result result = c::read_matrix(*transform, matrix, "transform");
+    lightbin_result result = c::check_pointers({{transform, "transform"}});
+    if (result.error == LIGHTBIN_OK) result = c::read_member(*transform, matrix, "transform");
     if (result.error != LIGHTBIN_OK) return result;
     return c::make_light({{box, "box"}}, box, [&] { return whole_box(matrix, half_side); });
 }

@@ -16,18 +16,18 @@ public:
     /// Finds the z-bins, intervals of view depth, that each light meets, and sorts the footprints by the first of them.
     /// A light's view depths, a sphere's being z - r to z + r, include their ends and are widened by the slices'
     /// margin. A light that ends close to a boundary may also count for the bin on the other side.
-    template <detail::LightKind kind>
-    std::optional<Error> order(Isa isa, const View& view, const Footprints<true>& footprints,
-                               const Slices& slices) {
-        rank<kind>(isa, view, footprints, slices);
+    ///
+    /// kernel  find_depth_buckets() for the lights' kind
+    void order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+               const Slices& slices) {
+        rank(kernel, view, footprints, slices);
         area_ = footprints.area();
         gather_lights(footprints.arrays());
-        return {};
     }
 
     /// Finds what order() does, but leaves the footprints where they are: only sources() and bins() are valid after it.
-    template <detail::LightKind kind>
-    void rank(Isa isa, const View& view, const Footprints<true>& footprints, const Slices& slices) {
+    void rank(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+              const Slices& slices) {
         run_ = {0, footprints.visible()};
         bin_count_ = static_cast<std::size_t>(slices.count());
         const std::uint32_t size = footprints.runs().back().end;
@@ -39,8 +39,8 @@ public:
             last_bins[i] = last;
             ++ends[first];
         };
-        table_of(slices).find(detail::depth_buckets_kernel<kind>(isa), true, detail::camera_of(view).z_sign,
-                                      footprints.arrays(), footprints.runs(), found);
+        table_of(slices).find(kernel, true, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
+                              found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
         // and at last the rank after the last of them.
@@ -62,8 +62,7 @@ public:
     std::span<const std::uint32_t> sources() const { return {sources_.data(), run_.end}; }
     std::span<const BinRange> bins() const { return {bins_.data(), bin_count_}; }
 
-    int slices() const { return 1; }
-    detail::FootprintSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
+    detail::FootprintSlice all() const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     LightRanks ranks() const { return {{order_.data(), run_.end}, bins()}; }
 
 private:

@@ -43,7 +43,7 @@ inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const 
             farthest = load_floats(out.farthest + i);
         } else {
             Floats x, y, z, radius;
-            load_listed_spheres(lights.view_lights.spheres, ids + i, lanes, x, y, z, radius);
+            load_listed_spheres(lights.view_lights.spheres, ids + i, x, y, z, radius);
             z = z * broadcast(z_sign);
             nearest = z - radius;
             farthest = z + radius;

@@ -12,8 +12,9 @@ class SlicedFootprints {
 public:
     /// Puts each footprint in the slices that its light's view depths meet, ends included: those of a sphere, z +- r,
     /// widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
-    template <detail::LightKind kind>
-    std::optional<Error> order(Isa isa, const View& view, const Footprints<true>& footprints,
+    ///
+    /// kernel  find_depth_buckets() for the lights' kind
+    std::optional<Error> order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
                                const Slices& slices) {
         constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
@@ -21,7 +22,7 @@ public:
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
-        const std::uint64_t size = find_slices<kind>(isa, view, footprints);
+        const std::uint64_t size = find_slices(kernel, view, footprints);
         if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
         arrays_ = buffers_.reserve(size);
         arrays_.view_lights = lights.view_lights;
@@ -40,8 +41,7 @@ public:
         return {};
     }
 
-    LightRanks ranks() const { return {}; }
-    int slices() const { return static_cast<int>(run_count_); }
+    std::size_t slices() const { return run_count_; }
     detail::FootprintSlice slice(std::size_t i) const {
         const SliceRun& run = runs_.data()[i];
         return {arrays_,
@@ -64,8 +64,7 @@ private:
 
     /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. One unused element
     /// follows the footprints of each slice, as put() may write there. Returns the number of elements of each array.
-    template <detail::LightKind kind>
-    std::uint64_t find_slices(Isa isa, const View& view, const Footprints<true>& footprints) {
+    std::uint64_t find_slices(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
         SliceRange* met = met_.reserve(footprints.visible());
@@ -76,8 +75,7 @@ private:
             ++runs[first].end;
             --runs[last + 1].end;
         };
-        table_->find(detail::depth_buckets_kernel<kind>(isa), false, detail::camera_of(view).z_sign,
-                     footprints.arrays(), footprints.runs(), found);
+        table_->find(kernel, false, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
         std::uint64_t size = 0;
         std::uint32_t count = 0;
         for (SliceRun* run = runs; run <= runs + run_count_; ++run) {

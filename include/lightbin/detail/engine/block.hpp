@@ -7,11 +7,6 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The kind of lights that the binning kernel for lights of `kind` is compiled for. Kernels without a depth test read
-/// footprints only, so all kinds share those for spheres.
-template <bool depth_test, LightKind kind>
-inline constexpr LightKind kind_read = depth_test ? kind : LightKind::sphere;
-
 /// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_*.
 struct BlockList {
     std::uint32_t begin, count;

@@ -59,8 +59,7 @@ inline void fill_8_floats(float* to, float value) {
 /// Stores what the depth test compares lights with, for the block that begins at tile column 8 * x and tile row `top`:
 /// in `boxes`, six arrays of one float for each of its 64 tiles, the boxes around the tiles' cells, as store_boxes()
 /// lays them out, and in `edges` the edges of the tiles. Returns a bit for each tile whose Z bounds are not empty.
-template <class Id>
-std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* boxes, TileEdges& edges) {
+inline std::uint64_t arrange_cells(const BinJob& job, unsigned x, unsigned top, float* boxes, TileEdges& edges) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const unsigned rows = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
@@ -92,7 +91,7 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
 }
 
 /// Returns the boxes of a slice's cells. They are the boxes that store_boxes() would store for these cells.
-template <class Id> SlabBoxes arrange_slab(const BinJob<Id>& job, Scratch& scratch) {
+inline SlabBoxes arrange_slab(const BinJob& job, Scratch& scratch) {
     const Camera& camera = *job.camera;
     SlabBoxes slab;
     slab.z0 = min_of(max_of(job.slab[0], camera.near_depth), FLT_MAX);

@@ -8,23 +8,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Returns into how many parts the chunks of lights are divided for a number of threads: four parts a thread, so that
-/// little time is lost where one thread starts late. One part if there is one thread, as each part takes memory.
-inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
-    return workers > 1 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
-}
-
 /// Returns whether binning by scattering (scatter.hpp) is faster than by lists for blocks of 8x8 tiles (lists.inl), for
 /// lights whose rectangles have `area` tiles in all, each a list entry, in a grid of `tiles` tiles. Visiting all blocks
 /// takes as long as scattering three entries per tile of the grid (with AVX-512 one). The scalar tier always scatters.
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) {
     if (isa == Isa::scalar) return true;
     return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
-}
-
-/// Returns the time to write a row of `tiles` empty tiles, in units of the time to write one entry of the index list.
-inline std::uint64_t empty_row_cost(std::uint64_t tiles) {
-    return tiles;
 }
 
 /// Binning by scattering (scatter.hpp) counts the lights of this many rows of tiles at a time, to bound its memory.

@@ -184,8 +184,7 @@ struct SlabCells {
 /// Stores for each row of tiles a byte for each sphere, with a bit for each of the row's 8 boxes that it meets, in the
 /// memory of Scratch::tile_masks. Rows are list.padded_count() bytes apart. Builds of clusters of spheres take 1.3
 /// times as long with a 64-bit word for each light instead, as mask_lights() stores it.
-template <class Id>
-void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabCells& slab, const BlockList& list) {
+inline void store_met_boxes(const BinJob& job, Scratch& scratch, const SlabCells& slab, const BlockList& list) {
     const SlabCells boxes = slab;  // a local copy, so that compilers need not reload it after each store
     const std::uint32_t padded = list.padded_count();
     const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
@@ -222,8 +221,8 @@ template <class Light> struct TestedLights {
 /// slab           with by_slab, the boxes around the block's cells in a depth slice, which spheres are tested against
 /// indices        the lights' indices in the footprint arrays
 /// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
-template <bool by_slab, LightKind kind, class Slab, class Id>
-void meet_64_lights(const BinJob<Id>& job, const BlockCells& cells, const Slab& slab,
+template <bool by_slab, LightKind kind, class Slab>
+void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab,
                     const std::uint32_t* indices, const std::uint8_t* columns, const std::uint8_t* rows,
                     std::uint32_t count, std::uint64_t* met) {
     const ViewLights lights = job.lights.view_lights;
@@ -305,8 +304,8 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
 
 /// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
 /// `top`. Removes lights that are in none of its tiles from the list, and replaces the others' indices by ids.
-template <bool by_slab, LightKind kind, class Id>
-void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
+template <bool by_slab, LightKind kind>
+void mask_lights(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                  BlockList& list) {
     BlockCells cells;
     cells.drawn = arrange_cells(job, x, top, cells.boxes, cells.edges);
@@ -340,8 +339,8 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
 /// slab   with by_slab, the boxes around the depth slice's cells, which lights are tested against
 /// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
 /// end    the end of the tile rows that the caller will ask for
-template <bool depth_test, bool by_slab, LightKind kind, class Id>
-const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
+template <bool depth_test, bool by_slab, LightKind kind>
+const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
                              unsigned top, unsigned end) {
     constexpr bool slab_alone = by_slab && kind == LightKind::sphere;
     constexpr bool masked = depth_test && !slab_alone;

@@ -150,7 +150,7 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
 /// slab       the boxes around a depth slice's cells, if list_band reads them
 /// list_band  list_lights() for the options
 template <class Id, class ListLights>
-LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share,
+LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob& job, Scratch& scratch, const BinShare<Id>& share,
                                                  const SlabBoxes& slab, ListLights list_band) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     ListRange* tiles = job.tiles + share.begin * std::size_t{tiles_x};
@@ -180,23 +180,25 @@ LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob<>& job, Scratch& s
 
 /// bin_blocks_by() with the list_lights() of the given options.
 template <bool depth_test, class Id, bool by_slab, LightKind kind>
-std::uint64_t bin_blocks(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
+std::uint64_t bin_blocks(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     SlabBoxes slab;
     if constexpr (by_slab)
         if (job.visible != 0) slab = arrange_slab(job, scratch);
-    return bin_blocks_by(job, scratch, share, slab, list_lights<depth_test, by_slab, kind, std::uint32_t>);
+    return bin_blocks_by(job, scratch, share, slab, list_lights<depth_test, by_slab, kind>);
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-template <bool depth_test, bool by_slab, LightKind kind, class Id>
-std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
+///
+/// by_slab  as for bin_kernel()
+template <bool by_slab, LightKind kind>
+std::uint64_t count_entries(const BinJob& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
     SlabBoxes slab;
     if constexpr (by_slab) slab = arrange_slab(job, scratch);
     BandLists bands;
     std::uint64_t entries = 0;
     for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<depth_test, by_slab, kind>(job, scratch, slab, bands, top, end);
+        const BlockList* list = list_lights<true, by_slab, kind>(job, scratch, slab, bands, top, end);
         for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
             for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
                 entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));

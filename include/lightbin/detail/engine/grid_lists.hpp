@@ -9,61 +9,52 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Whether spheres are tested by SlabCells, for a slice's boxes of equal depths. This is faster than the test for
-/// boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
-template <bool depth_test, LightKind kind, bool sliced>
-inline constexpr bool by_slab = sliced && depth_test && kind != LightKind::box;
-
-/// The features that a TileLists needs, as constants. The implementation of lightbin.h passes a struct in place of this
-/// whose `tested` and `sliced` are set at run time.
-template <bool any_test, bool any_slice> struct FixedLists {
-    static constexpr bool may_test = any_test, may_slice = any_slice;
-    /// Whether a depth test decides in which tiles of its rectangle a light is listed, and whether there is a grid for
-    /// each depth slice.
-    static constexpr bool tested = any_test, sliced = any_slice;
-};
-
-/// A light grid, or if How::sliced one per depth slice, stored one after another. Its memory is kept from call to call.
-/// The binning kernels are arguments of its functions.
+/// A light grid, or with clusters one per depth slice, stored one after another. Its memory is kept from call to call.
 ///
-/// How  a FixedLists, or a struct with the same members
+/// How  see Stages
 template <class Id, class How> class TileLists {
 public:
-    using Job = BinJob<>;
-
     /// Builds the grid. Tiles are in row-major order, slice after slice. Returns an error, and has no grid, if Z bounds
     /// have too few elements, or 32 bits can't count the entries.
     ///
-    /// footprints     SlicedFootprints if how.sliced, else Footprints or RankedFootprints; with a depth test, ones that
-    ///                keep the lights in view space
-    /// parallel       Serial or Parallel
-    /// choose_kernel  choose_kernel(isa, view, job) returns the kernel, a BinKernel, for one slice
-    /// count_entries  count_entries(job, scratch) returns how many entries the lists of one slice have; called if
-    ///                how.tested
-    template <class AnyFootprints, class Threads, class ChooseKernel, class CountEntries>
-    LIGHTBIN_ONCE std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints,
-                                             const ZBounds& bounds, Buffer<Scratch>& scratch,
-                                             [[maybe_unused]] const Threads& parallel, const How& how,
-                                             const ChooseKernel& choose_kernel,
-                                             [[maybe_unused]] const CountEntries& count_entries) {
+    /// all       the footprints, if there are no clusters; with a depth test, ones that keep the lights in view space
+    /// sliced    with clusters SlicedFootprints, else not read
+    /// parallel  Serial or Parallel
+    template <class Sliced, class Threads>
+    LIGHTBIN_ONCE std::optional<Error> build(const How& how, Isa isa, const View& view, const FootprintSlice& all,
+                                             [[maybe_unused]] const Sliced& sliced, const ZBounds& bounds,
+                                             const ListKernels<Id>& kernels, Buffer<Scratch>& scratch,
+                                             [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
-        Job common = {};
-        if (const auto error = prepare(view, bounds, how, common)) return error;
-        const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(footprints.slices());
+        BinJob common = {};
+        if (const auto error = prepare(how, view, bounds, common)) return error;
+        const bool clusters = how.is.slicing == Slicing::clusters;
+        std::size_t slices = 1;
+        if constexpr (How::may.clusters)
+            if (clusters) slices = sliced.slices();
+        const auto job_of = [&]([[maybe_unused]] std::size_t slice) {
+            BinJob job = common;
+            FootprintSlice& footprints = job;
+            footprints = all;
+            if constexpr (How::may.clusters)
+                if (clusters) footprints = sliced.slice(slice);
+            return job;
+        };
+        const std::size_t tiles = view.tile_count();
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
-            const FootprintSlice part = footprints.slice(slice);
-            area += part.area;
-            if (const auto error = check_list_size(view, part)) return error;
+            const BinJob job = job_of(slice);
+            area += job.area;
+            if (const auto error = check_list_size(view, job)) return error;
         }
         std::uint64_t capacity = area;
         // Tests leave fewer entries than rectangles have tiles: if 32 bits can't count the tiles, count the entries.
-        if constexpr (How::may_test)
-            if (how.tested && area > max_entries) {
+        if constexpr (How::may.depth_test)
+            if (how.is.depth_test && area > max_entries) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < slices; ++slice)
-                    capacity += count_entries(job_of(common, footprints, slice), scratch.data()[0]);
+                    capacity += kernels.count(job_of(slice), scratch.data()[0]);
             }
         if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
 
@@ -73,37 +64,31 @@ public:
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, Scratch& memory) {
             std::uint32_t offset = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
-                Job job = job_of(common, footprints, slice);
+                BinJob job = job_of(slice);
                 job.tiles += slice * tiles;
-                const auto kernel = choose_kernel(isa, view, job);
+                const auto kernel = kernels.choose(isa, view, job.area);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
             return std::uint64_t{offset};
         };
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t steps = how.sliced ? slices : rows,
+            const std::size_t steps = clusters ? slices : rows,
                               count = min_of<std::size_t>(parallel.workers(), steps);
             if (count > 1 && area <= max_entries) {
                 scratch.reserve(count, count);
                 const std::span<Share> shares(shares_.reserve(count), count);
-                if constexpr (How::may_slice)
-                    if (how.sliced) {
-                        share_steps(shares, slices, empty_row_cost(tiles),
-                                    [&](std::size_t slice) { return footprints.slice(slice).area; });
-                        entries_ = static_cast<std::size_t>(build_shares(
-                            parallel, shares, common.tiles, tiles, share_lists_, list,
-                            [&](const Share& share, std::size_t i, Id* out) {
-                                return build_slices(share.begin, share.end, out, scratch.data()[i]);
-                            }));
-                        return {};
-                    }
-                const Job job = job_of(common, footprints, 0);
-                const auto kernel = choose_kernel(isa, view, job);
-                share_rows(job, parallel, row_sums_, shares);
+                const BinJob job = job_of(0);
+                const auto kernel = kernels.choose(isa, view, job.area);
+                if (clusters)
+                    share_steps(shares, slices, tiles, [&](std::size_t slice) { return job_of(slice).area; });
+                else
+                    share_rows(job, parallel, row_sums_, shares);
                 entries_ = static_cast<std::size_t>(
-                    build_shares(parallel, shares, common.tiles, tiles / rows, share_lists_, list,
+                    build_shares(parallel, shares, common.tiles, tiles / (clusters ? 1 : rows), share_lists_, list,
                                  [&](const Share& share, std::size_t i, Id* out) {
-                                     return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
+                                     Scratch& memory = scratch.data()[i];
+                                     return clusters ? build_slices(share.begin, share.end, out, memory)
+                                                     : kernel(job, memory, {share.begin, share.end, out, 0});
                                  }));
                 return {};
             }
@@ -112,15 +97,15 @@ public:
         return {};
     }
 
-    template <class Range = ListRange> std::span<const Range> tiles() const { return {tiles_.data(), tile_count_}; }
+    std::span<const ListRange> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
 private:
     static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
 
     /// Sets the camera, the Z bounds and the tiles' edges, which the jobs of all slices have in common.
-    std::optional<Error> prepare(const View& view, const ZBounds& bounds, [[maybe_unused]] const How& how,
-                                 Job& common) {
+    std::optional<Error> prepare([[maybe_unused]] const How& how, const View& view, const ZBounds& bounds,
+                                 BinJob& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);
         const std::span<const float> sides[] = {bounds.min, bounds.max};
@@ -129,14 +114,14 @@ private:
             if (sides[side].size() < tiles) return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
             common.bounds[side] = sides[side].data();
         }
-        if constexpr (How::may_test)
-            if (how.tested) find_edges(common);
+        if constexpr (How::may.depth_test)
+            if (how.is.depth_test) find_edges(common);
         return {};
     }
 
     /// Finds the edges of all columns and rows of tiles, from which the depth test makes boxes around cells. Zeros
     /// follow the edges, as whole vectors are read.
-    void find_edges(Job& common) {
+    void find_edges(BinJob& common) {
         const ImageAxis* axes[] = {&common.camera->x, &common.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {
             const std::size_t count = static_cast<std::size_t>(axes[i]->tiles), capacity = count + SlabBoxes::padding;
@@ -148,13 +133,6 @@ private:
             common.edges[2 * i] = low;
             common.edges[2 * i + 1] = high;
         }
-    }
-
-    template <class AnyFootprints>
-    static Job job_of(const Job& common, const AnyFootprints& footprints, std::size_t slice) {
-        Job job = common;
-        static_cast<FootprintSlice&>(job) = footprints.slice(slice);
-        return job;
     }
 
     static std::optional<Error> check_list_size(const View& view, const FootprintSlice& slice) {
@@ -171,32 +149,6 @@ private:
     Buffer<Buffer<Id>> share_lists_;
     Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
-};
-
-/// The TileLists for a depth test that is known when it is compiled, with its kernels.
-template <class Id, bool depth_test, bool sliced> class GridLists {
-    using How = FixedLists<depth_test, sliced>;
-
-public:
-    template <LightKind kind, class AnyFootprints, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
-                               Buffer<Scratch>& scratch, const Threads& parallel) {
-        constexpr bool slab = by_slab<depth_test, kind, sliced>;
-        return lists_.build(
-            isa, view, footprints, bounds, scratch, parallel, How(),
-            [](Isa set, const View& of, const BinJob<>& job) {
-                return bin_kernel<depth_test, Id, slab, kind>(set, of, job.area);
-            },
-            [](const auto& job, Scratch& memory) {  // `auto`, so that it is not compiled where nothing is tested
-                return least::count_entries<depth_test, slab, kind>(job, memory);
-            });
-    }
-
-    template <class Range = ListRange> std::span<const Range> tiles() const { return lists_.tiles(); }
-    std::span<const Id> indices() const { return lists_.indices(); }
-
-private:
-    TileLists<Id, How> lists_;
 };
 
 }}}  // namespace lightbin::detail

@@ -76,8 +76,8 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
 /// Lists the lights of as many bands of 8 tile rows, from row `begin` on, as max_band_entries allows in one pass.
 ///
 /// tested  whether to list indices in the footprint arrays, for depth tests, rather than lights' ids
-template <bool tested, class Id>
-void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
+template <bool tested>
+void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;
     to.panels = (width + panel_blocks - 1) / panel_blocks;
     const std::uint64_t together = min_of<std::uint64_t>(

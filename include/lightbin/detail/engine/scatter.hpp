@@ -15,8 +15,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The counts come from a difference array: each rectangle adds 1 at two of its corners and subtracts 1 at the other
 /// two, so that prefix sums along columns and rows give the number of rectangles over each tile. A second difference
 /// array counts the rectangles over each row: a row without any needs no sums.
-template <class Id>
-std::uint32_t count_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t offset) {
+inline std::uint32_t count_rows(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end,
+                                std::uint32_t offset) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1,
                       size = pitch * (end - begin + 1);
@@ -76,7 +76,7 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
 /// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in
 /// each list. It is not inlined, as it takes a tenth longer inside another loop.
 template <class Id>
-LIGHTBIN_NOINLINE void fill_rows(const BinJob<>& job, Id* list, std::size_t begin, std::size_t end) {
+LIGHTBIN_NOINLINE void fill_rows(const BinJob& job, Id* list, std::size_t begin, std::size_t end) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     for (std::size_t run = job.runs.size(); run-- > 0;)
@@ -91,7 +91,7 @@ LIGHTBIN_NOINLINE void fill_rows(const BinJob<>& job, Id* list, std::size_t begi
 
 /// Bins one light or none, without prefix sums, as the index list is one id repeated. Returns the number of entries.
 template <class Id>
-std::uint64_t scatter_one(const BinJob<>& job, const FootprintRun& run, const BinShare<Id>& share) {
+std::uint64_t scatter_one(const BinJob& job, const FootprintRun& run, const BinShare<Id>& share) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     ListRange *tile = job.tiles + share.begin * width, *const end = job.tiles + share.end * width;
     std::uint32_t offset = share.offset;
@@ -113,7 +113,7 @@ std::uint64_t scatter_one(const BinJob<>& job, const FootprintRun& run, const Bi
 /// Bins one thread's share of tile rows: counts each tile's lights, then writes each light's id to its tiles' lists.
 /// Returns the number of list entries, and writes no element past the last entry.
 template <class Id>
-std::uint64_t scatter_lights(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
+std::uint64_t scatter_lights(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];
     if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one(job, run, share);
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);

@@ -17,7 +17,8 @@ struct Share {
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The
-/// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`.
+/// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`, its number
+/// of tiles: to write an empty tile takes as long as to write one entry of the index list.
 template <class Area> void share_steps(std::span<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
@@ -43,8 +44,8 @@ template <class Area> void share_steps(std::span<Share> shares, std::size_t step
 /// footprints has a difference array of its own, so that threads can fill them in parallel.
 ///
 /// sums  memory for the difference arrays
-template <class Id>
-void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, std::span<Share> shares) {
+inline void share_rows(const BinJob& job, const Parallel& parallel, Buffer<std::uint64_t>& sums,
+                       std::span<Share> shares) {
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* const row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
@@ -62,7 +63,7 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
             area += row_area[run * pitch + row];
         row_area[row] = area;
     }
-    share_steps(shares, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
+    share_steps(shares, rows, static_cast<std::uint64_t>(job.camera->x.tiles),
                 [&](std::size_t row) { return row_area[row]; });
 }
 

@@ -235,10 +235,9 @@ LIGHTBIN_INLINE unsigned good_boxes(const Floats (&given)[17]) {
 /// Appends the footprints of those of the boxes first..first + count - 1 that are in view. Boxes are projected in
 /// float where its rounding errors are at most 2^-9 of their depths and nothing overflows or underflows, and their
 /// balls if these cut them and lie wholly beyond the near plane; all others in double.
-template <LightKind kind>
-    requires(kind == LightKind::box)
-void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                    const FootprintArrays& out, ProjectCounts& counts) {
+template <>
+inline void project_lights<LightKind::box>(const Camera& camera, const LightSource& source, std::uint32_t first,
+                                           std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
     Box buffer[ChunkRects::size], padded[lanes];
     const TransformLanes transform(source.to_view);

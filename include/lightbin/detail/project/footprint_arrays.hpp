@@ -135,9 +135,8 @@ struct FootprintSlice {
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
-/// What the binning kernels read, and where they write each tile's ListRange, the offset and count of its list. It is
-/// the same type for all widths of ids.
-template <class Id = std::uint32_t> struct BinJob : FootprintSlice {
+/// What the binning kernels read, and where they write each tile's ListRange, the offset and count of its list.
+struct BinJob : FootprintSlice {
     const Camera* camera;
     const float* bounds[2];  ///< the tiles' depths ZBounds::min and max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()

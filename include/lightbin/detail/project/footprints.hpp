@@ -24,33 +24,35 @@ template <class Source> std::optional<Error> refuse(const Source& source, std::u
     return error;
 }
 
-/// Returns into how many parts an array of lights is divided to be projected. It is 1 where the padding behind each part's run of footprints could push indices beyond 32 bits.
+/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is lost
+/// where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding behind
+/// each part's run of footprints could push indices beyond 32 bits.
 inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
-    return lights >> 31 == 0 ? project_parts(lights / ChunkRects::size + 1, parallel.workers()) : 1;
+    const std::size_t chunks = lights / ChunkRects::size + 1, workers = parallel.workers();
+    return workers > 1 && lights >> 31 == 0 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
 }
 
 /// Writes the lights that `lights`, a Lights, makes of its array. LightSource::copy points to this function.
 template <class Array> void copy_lights(const void* lights, std::size_t first, std::size_t count, void* to) {
-    const Array& from = *static_cast<const Array*>(lights);
-    from.make(first, count, static_cast<decltype(from.made(from.array[0]))*>(to));
+    static_cast<const Array*>(lights)->make(first, count, static_cast<typename Array::Made*>(to));
 }
+
+/// What Footprints keep of the lights in view space for later stages: nothing; the lights, for slices or coverage();
+/// with each spot or Box also what the depth test needs.
+enum class Kept : std::uint8_t { nothing, lights, lights_and_planes };
 
 }  // namespace detail
 
 /// The footprints of the lights in view, in ascending order of id.
-///
-/// keeps_lights  keep the lights in view space, for depth tests, slices or coverage()
-template <bool keeps_lights> class Footprints {
+class Footprints {
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
     /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
     /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
     /// of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
-    ///
-    /// for_boxes  store with each spot or Box what depth tests against boxes need; only if keeps_lights
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
-                               bool for_boxes = false) {
+                               detail::Kept kept = detail::Kept::nothing) {
         lights_ = detail::light_count(source);
         const auto parts_of = [&](const auto& lights) { return detail::parts_of(lights.array.size(), parallel); };
         run_count_ = 0;
@@ -60,7 +62,7 @@ public:
         arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding);
         std::size_t first_id = 0, first_part = 0;
         detail::for_each_array(source, [&](const auto& lights) {
-            project_array(isa, view, lights, parallel, for_boxes, first_id, first_part, parts_of(lights));
+            project_array(isa, view, lights, parallel, kept, first_id, first_part, parts_of(lights));
             first_id += lights.array.size();
             first_part += parts_of(lights);
         });
@@ -87,9 +89,7 @@ public:
         return {all, rejected(), all - rejected() - visible(), kinds.first_spot, kinds.first_box};
     }
 
-    int slices() const { return 1; }
-    detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
-    LightRanks ranks() const { return {}; }
+    detail::FootprintSlice all() const { return {arrays_, runs(), visible(), area()}; }
 
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
@@ -98,29 +98,29 @@ private:
     ///
     /// first_id, first_part  the number of lights, and of parts, in the arrays before this one
     template <class Array>
-    void project_array(Isa isa, const View& view, const Array& lights, const Parallel& threads, bool for_boxes,
+    void project_array(Isa isa, const View& view, const Array& lights, const Parallel& threads, detail::Kept kept,
                        std::size_t first_id, std::size_t first_part, std::size_t parts) {
         constexpr detail::LightKind kind = Array::kind;
         const std::size_t count = lights.array.size();
-        detail::LightSource source = {.array = detail::as_they_are(lights),
+        detail::LightSource source = {.array = lights.as_they_are(),
                                       .lights = &lights,
                                       .first_id = static_cast<std::uint32_t>(first_id),
                                       .to_view = lights.to_view ? &*lights.to_view : nullptr,
-                                      .with_planes = for_boxes};
+                                      .with_planes = kept == detail::Kept::lights_and_planes};
         if (source.array == nullptr) source.copy = detail::copy_lights<Array>;
-        detail::ViewLights& kept = arrays_.view_lights;
-        [[maybe_unused]] const std::uint64_t capacity = std::uint64_t{count} + chunk;
+        detail::ViewLights& view_lights = arrays_.view_lights;
+        const bool keep = kept != detail::Kept::nothing;
+        const std::uint64_t capacity = std::uint64_t{count} + chunk;
         if constexpr (kind == detail::LightKind::sphere) {
-            kept.spheres = static_cast<const Sphere*>(source.array);
-            if constexpr (keeps_lights)
-                if (source.copy != nullptr || source.to_view != nullptr)
-                    kept.spheres = source.out_spheres = spheres_.reserve(capacity);
-            kept.first_spot = kept.first_box = static_cast<std::uint32_t>(first_id + count);
+            view_lights.spheres = static_cast<const Sphere*>(source.array);
+            if (keep && (source.copy != nullptr || source.to_view != nullptr))
+                view_lights.spheres = source.out_spheres = spheres_.reserve(capacity);
+            view_lights.first_spot = view_lights.first_box = static_cast<std::uint32_t>(first_id + count);
         } else if constexpr (kind == detail::LightKind::spot) {
-            if constexpr (keeps_lights) kept.spots = source.out_spots = spots_.reserve(capacity);
-            kept.first_box = static_cast<std::uint32_t>(first_id + count);
-        } else {
-            if constexpr (keeps_lights) kept.boxes = source.out_boxes = boxes_.reserve(capacity);
+            if (keep) view_lights.spots = source.out_spots = spots_.reserve(capacity);
+            view_lights.first_box = static_cast<std::uint32_t>(first_id + count);
+        } else if (keep) {
+            view_lights.boxes = source.out_boxes = boxes_.reserve(capacity);
         }
         // A single light is projected faster alone than in a vector that is filled up with copies of it.
         const auto kernel = detail::project_kernel<kind>(count > 1 ? isa : Isa::scalar);

@@ -132,10 +132,9 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
 /// Appends the footprints of the spheres first..first + count - 1 that are in view. Spheres are projected in float
 /// where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
 /// beyond the near plane. All other spheres, and those with a NaN, are projected in double.
-template <LightKind kind>
-    requires(kind == LightKind::sphere)
-void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                    const FootprintArrays& out, ProjectCounts& counts) {
+template <>
+inline void project_lights<LightKind::sphere>(const Camera& camera, const LightSource& source, std::uint32_t first,
+                                              std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
     Sphere buffer[ChunkRects::size], padded[lanes];
     const TransformLanes transform(source.to_view);

@@ -131,10 +131,9 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
 /// Appends the footprints of the spots first..first + count - 1 that are in view. Spots are projected in float where
 /// nothing overflows, underflows or is NaN, the sphere that the cone cuts lies beyond the near plane, and the spot's
 /// least view depth is at least 2^-16 of that sphere's |x| + |y| + |z| + r. All others are projected in double.
-template <LightKind kind>
-    requires(kind == LightKind::spot)
-void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                    const FootprintArrays& out, ProjectCounts& counts) {
+template <>
+inline void project_lights<LightKind::spot>(const Camera& camera, const LightSource& source, std::uint32_t first,
+                                            std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
     Spot buffer[ChunkRects::size], padded[lanes];
     // The spots that are projected in double: in view space, the spheres that the cones cut, and the least spheres.

@@ -82,9 +82,9 @@ inline Floats load_quads(const char* from, std::size_t stride) {  // a vec4, and
 }
 /// As in common.inl. A vector would have to wait for the stores of the spheres that are copied there to memory for it.
 template <class Index>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y,
-                         Floats& z, Floats& radius) {
-    const auto one = [=](std::uint32_t i) { return _mm_loadu_ps(&spheres[indices[min_of(i, count - 1)]].x); };
+void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
+                         Floats& radius) {
+    const auto one = [=](std::uint32_t i) { return _mm_loadu_ps(&spheres[indices[i]].x); };
     const auto four = [=](std::uint32_t i) {
         const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(one(i)), one(i + 4), 1);
         return _mm512_insertf32x4(_mm512_insertf32x4(two, one(i + 8), 2), one(i + 12), 3);

@@ -11,6 +11,12 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// A mask's bits, see movemask(), with every lane set.
 inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
 
+/// Projects lights of one kind to footprints. Specialised by spheres.inl, and by spots.inl and boxes.inl, which programs
+/// have that include spot.hpp or box.hpp.
+template <LightKind>
+void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
+                    const FootprintArrays& out, ProjectCounts& counts);
+
 // Loads and stores take the compiler's own type of register: GCC 12 copies a class that contains one in two halves, and
 // the next load would have to wait for both.
 inline Floats load_floats(const float* from) {
@@ -80,14 +86,12 @@ LIGHTBIN_INLINE const Light* whole_vector(const Light* from, std::uint32_t used,
     return padded;
 }
 
-/// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the
-/// last sphere fills the other lanes.
+/// Loads the spheres with the indices from `indices` on as four vectors.
 template <class Index, class Reals>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Reals& x, Reals& y,
-                         Reals& z, Reals& radius) {
+void load_listed_spheres(const Sphere* spheres, const Index* indices, Reals& x, Reals& y, Reals& z, Reals& radius) {
     Sphere some[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
-        some[i] = load_sphere(spheres + indices[min_of(i, count - 1)]);
+        some[i] = load_sphere(spheres + indices[i]);
     load_spheres(some, x, y, z, radius);
 }
 

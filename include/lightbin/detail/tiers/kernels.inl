@@ -55,19 +55,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The kernels that each kind of lights has of its own: here those of spheres. shape_kernels.inl has those of spots and
-/// boxes, as specialisations, which a program finds if it includes spot.hpp or box.hpp.
-template <LightKind> struct KernelsOf {
-    template <LightKind> static ProjectKernel project_kernel() { return project_lights<LightKind::sphere>; }
-};
-
 /// The tier's kernels, for kernels.hpp.
 struct Tier {
     static constexpr std::size_t vector = lanes;
 
-    template <LightKind kind> static ProjectKernel project_kernel() {
-        return KernelsOf<kind>::template project_kernel<kind>();
-    }
+    template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     static DepthKernel depth_kernel() { return column_extremes; }
 

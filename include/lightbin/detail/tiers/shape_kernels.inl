@@ -11,16 +11,5 @@
 
 #include <lightbin/detail/project/boxes.inl>
 
-namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
-
-template <> struct KernelsOf<LightKind::spot> {
-    template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
-};
-template <> struct KernelsOf<LightKind::box> {
-    template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
-};
-
-}}}}  // namespace lightbin::detail
-
 #undef LIGHTBIN_KERNELS
 #undef LIGHTBIN_TIER

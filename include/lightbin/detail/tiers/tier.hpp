@@ -16,7 +16,7 @@ using DepthBucketsKernel = void (*)(const DepthBuckets& to, float z_sign, const 
                                    const std::uint32_t* ids, std::uint32_t count, LightDepths& out);
 using DepthKernel = void (*)(const DepthRows& depth, float skipped, float* lower, float* upper);
 template <class Id>
-using BinKernel = std::uint64_t (*)(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share);
+using BinKernel = std::uint64_t (*)(const BinJob& job, Scratch& scratch, const BinShare<Id>& share);
 
 /// Stores bounds along the image axes of the part of a sphere beyond the near plane. The sphere is the centre (x, y, z),
 /// signed so that tile indices grow with x and y, and z is the view depth, and the radius: floats converted to double.

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: MIT
-// node server.mjs PORT [FOLDER]: serves a folder (this one), and the packages in the folders THREE, PLAYCANVAS and
-// LIGHTBIN, to this machine alone.
+// node server.mjs PORT FOLDER: serves a folder, the packages in the folders THREE, PLAYCANVAS and LIGHTBIN, and in
+// /tests/ this folder, to this machine alone.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 
-const three = path.dirname(fileURLToPath(import.meta.url));
 const folders = {three: process.env.THREE, playcanvas: process.env.PLAYCANVAS, lightbin: process.env.LIGHTBIN,
-                 fixtures: path.join(three, '../fixtures')};
+                 tests: path.dirname(fileURLToPath(import.meta.url))};
 const types = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm'};
 // With these a page's clock has steps of 5 microseconds, and else of 100.
 const isolated = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};
 
 /// Returns the address of the server, once it listens.
-export async function serve(port = 0, here = three) {
+export async function serve(port, here) {
     const server = http.createServer((request, response) => {
         const [, first, ...rest] = decodeURI(new URL(request.url, 'http://localhost').pathname).split('/');
         const folder = folders[first] ?? here, file = path.join(folder, ...folder === here ? [first] : rest);
-        if (!file.startsWith(folder) || !fs.statSync(file,
-            {throwIfNoEntry: false})?.isFile()) return response.writeHead(404).end();
+        const found = file.startsWith(folder) && fs.statSync(file, {throwIfNoEntry: false})?.isFile();
+        if (!found) return response.writeHead(404).end();
         response.writeHead(200, {'Content-Type': types[path.extname(file)] ?? 'application/octet-stream', ...isolated});
         fs.createReadStream(file).pipe(response);
     });
@@ -28,6 +27,6 @@ export async function serve(port = 0, here = three) {
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
-    const [, , port, folder = three] = process.argv;
+    const [, , port, folder] = process.argv;
     console.log(`${(await serve(Number(port), path.resolve(folder))).url}page.html`);
 }

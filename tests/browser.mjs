@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Debian's Chromium without a window, with WebGL 2 and WebGPU on a software renderer. PLAYWRIGHT is the folder of
+// playwright-core.
+import assert from 'node:assert/strict';
+import path from 'node:path';
+import {pathToFileURL} from 'node:url';
+import {serve} from './server.mjs';
+
+const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT, 'index.mjs')));
+
+// Nothing is looked for outside of this machine.
+export const launch = () => chromium.launch({executablePath: '/usr/bin/chromium', args: [
+    '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+    '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+    '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--enable-unsafe-webgpu',
+    '--use-webgpu-adapter=swiftshader',
+]});
+
+/// Returns the list of errors and warnings of a page from now on. Chromium warns of its own reading of a canvas, where
+/// a program draws that and not a GPU.
+export function complaints_of(page) {
+    const complaints = [];
+    page.on('pageerror', error => complaints.push(error.stack));
+    page.on('console', message => {
+        if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text()))
+            complaints.push(message.text());
+    });
+    return complaints;
+}
+
+/// Opens page.html of a folder, a URL, which draws nothing until it is told to, and waits for window[name]. Returns the
+/// page, its complaints, and close().
+export async function open(folder, name) {
+    const server = await serve(0, folder.pathname), browser = await launch(), page = await browser.newPage();
+    const complaints = complaints_of(page);
+    page.setDefaultTimeout(240000);
+    await page.goto(`${server.url}page.html#still`);
+    await page.waitForFunction(name => window[name] !== undefined, name)
+        .catch(() => { throw new Error(complaints.join('\n')); });
+    return {page, complaints, close: async () => {
+        await browser.close();
+        server.close();
+    }};
+}
+
+/// Asserts of the difference() of two pictures that they are at most `apart` of 255 apart, and not dark.
+export function same({most, mean, length}, what = 'a picture', apart = 0) {
+    assert.ok(mean > 4, `${what} is dark: ${mean}`);
+    assert.equal(length, 0, what);
+    assert.ok(most <= apart, `${what}: ${most} of 255 apart`);
+}
