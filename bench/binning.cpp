@@ -18,6 +18,7 @@
 #include "world.hpp"
 
 #include <lightbin/binner.hpp>
+#include <lightbin/masks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -236,6 +237,29 @@ template <Options options> void time_slices(const std::string& name, const Set<F
                0, 1, set.lights);
 }
 
+/// Masks of columns and rows against the baseline and the lists, and with z-bins against those without.
+template <Options options> void time_masks(const std::string& name, const Set<Frame>& set, int tile_size) {
+    const std::vector<Frame>& frames = set.frames();
+    const lightbin::View view = Lens().view(tile_size);
+    const FlatView flat_view = Lens().flat_view(tile_size);
+    const lightbin::Slices slices = z_bin_slices();
+    lightbin::MaskBinner masks(options.isa), with_bins(options.isa);
+    Build<options> build(tile_size);
+    Flat<float> flat;
+    const std::vector<Work<Frame>> works = {
+        [&](const Frame& frame) { return masks.bin(view, frame.lights)->words().size(); },
+        [&](const Frame& frame) { return with_bins.bin(view, frame.lights, slices)->words().size(); },
+        [&](const Frame& frame) { return build(view, frame.lights); },
+        [&](const Frame& frame) {
+            flat.build<false>(flat_view, frame.lights, nullptr, nullptr);
+            return flat.indices.size();
+        }};
+    const Turns turns = take_turns(frames, 2 * seconds_a_case, works);
+    add_result(name, options, "flat", turns, 0, 3, set.lights);
+    add_result(name, options, "lists", turns, 0, 2, set.lights);
+    add_result(name + "/z_bins", options, "masks", turns, 1, 0, set.lights);
+}
+
 /// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so
 /// that none finds its lights where another one left them in the cache.
 template <Options options> void time_sources(const std::string& name, const Set<WorldFrame>& set) {
@@ -354,6 +378,15 @@ void add_all_slices(bool quick) {
     }
 }
 
+void add_masks() {
+    for (const std::size_t n : {64u, 256u, 1000u, 2000u, 10000u})
+        for (const int tile_size : {32, 16}) {
+            const Set<Frame> set = field_set("field20", field20_median, n);
+            add_cases<Options{}>("masks/" + set.full_name() + text("/%dpx", tile_size),
+                                 [=]<Options one>(const std::string& name) { time_masks<one>(name, set, tile_size); });
+        }
+}
+
 void add_sources(const Set<WorldFrame>& set) {
     add_cases<Options{}>("sources/" + set.name,
                          [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
@@ -465,6 +498,7 @@ int main(int argc, char** argv) try {
     add_set("near", 0, quick);
     add_scene(LIGHTBIN_SCENES "/nova.glb");
     add_all_slices(quick);
+    add_masks();
     if (!quick) add_all_threads();
     add_builds(made_set("away", 1000000, away), 32);
     const Set<WorldFrame> field4 = {"field4", 10000, [] { return world_frames(10000, field4_median); }},

@@ -112,8 +112,8 @@ inline constexpr const char* error_sentences[] = {
      "memory, row major or column major"),
     ("{needed} lights are too many for the id type, which counts to {available}: choose a wider type by the option "
      "ids, or use fewer lights"),
-    ("the light index list would need {needed} entries, and 32-bit offsets reach {available}: use larger tiles, "
-     "fewer slices, or Z bounds"),
+    ("the light index list, or masks, would need {needed} entries, and 32-bit offsets reach {available}: use larger "
+     "tiles, fewer slices, or Z bounds"),
     ("the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: use "
      "fewer slices, larger tiles or fewer lights"),
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
@@ -151,7 +151,8 @@ inline constexpr const char* error_sentences[] = {
     "this language has no descriptor sets, register spaces or groups: each set must be 0, and one is {given}",
     "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
-    "lists that are built on the GPU are of tiles or of clusters, not of z-bins",
+    ("lists that are built on the GPU are of tiles or of clusters, not of z-bins; masks are of tiles or of z-bins, not "
+     "of clusters"),
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",

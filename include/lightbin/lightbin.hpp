@@ -32,6 +32,7 @@
 //   spot.hpp          to bin Spots: their kernels. And spheres around spots, tubes and rectangles
 //   box.hpp           to bin Boxes: their kernels. And boxes around decals, probes, rooms, projectors and tubes
 //   shader.hpp        shader text that reads the lists, in GLSL, HLSL and WGSL
+//   masks.hpp         masks of the columns and rows of tiles, in place of lists
 //   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists
 //   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
 //   grid_union.hpp    one grid for two views, such as two eyes

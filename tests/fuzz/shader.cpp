@@ -289,12 +289,13 @@ void fuzz_snippet(Bytes& bytes) {
     options.list_check = (more_flags & 4) != 0;
     options.window = (more_flags & 8) != 0;
     if ((more_flags & 16) != 0) take_slot(bytes, options.view);
+    options.masks = (more_flags & 32) != 0;
     for (const ShaderSlot slot : {options.slices, options.bins, options.view})
         question.slots.push_back(slot);
 
     const ListFormat& format = options.format;
     const Language language(options.language);
-    const bool table = format.encoding == ListEncoding::offset_count,
+    const bool masks = options.masks, table = !masks && format.encoding == ListEncoding::offset_count,
                lists_in_block = options.storage == ListStorage::uniform_block,
                tiles_in_block = table && (lists_in_block || options.tiles_in_uniform_block);
     const auto refuse_if = [&](bool condition, ErrorCode code) {
@@ -308,15 +309,18 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
               ErrorCode::no_wave_operations);
     refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
+    refuse_if(masks && options.slicing == Slicing::clusters, ErrorCode::no_such_slicing_shader);
     refuse_if(options.storage == ListStorage::texture_2d &&
                   (options.texture_width == 0 || options.texture_width > 16384),
               ErrorCode::texture_width_out_of_range);
     // Sizes in double: those that it cannot hold are far too large anyway.
     const double id_bytes = static_cast<double>(format.ids), tiles = options.max_tiles;
-    refuse_if(format.encoding == ListEncoding::sentinel && format.capacity == 0, ErrorCode::capacity_unknown);
-    refuse_if((lists_in_block || tiles_in_block) && tiles == 0, ErrorCode::block_size_unknown);
+    refuse_if(!masks && format.encoding == ListEncoding::sentinel && format.capacity == 0,
+              ErrorCode::capacity_unknown);
+    refuse_if((lists_in_block || tiles_in_block) && !masks && tiles == 0, ErrorCode::block_size_unknown);
+    refuse_if(lists_in_block && masks && options.uniform_block_bytes < 16, ErrorCode::block_size_unknown);
     refuse_if(lists_in_block && table && options.max_entries == 0, ErrorCode::block_size_unknown);
-    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
+    const bool sliced = options.slicing != Slicing::none, binned = !masks && options.slicing == Slicing::z_bins;
     refuse_if(lists_in_block && sliced && options.max_slices == 0, ErrorCode::block_size_unknown);
     const double list_bytes = table ? options.max_entries * id_bytes : tiles * format.capacity * id_bytes;
     question.block_bytes =
@@ -324,14 +328,14 @@ void fuzz_snippet(Bytes& bytes) {
     const auto too_large = [&](double size) { return std::ceil(size / 16) * 16 > question.block_bytes; };
     const double slices = options.max_slices;
     refuse_if((tiles_in_block && too_large(8 * tiles)) ||
-                  (lists_in_block && too_large(list_bytes)) ||
+                  (lists_in_block && !masks && too_large(list_bytes)) ||
                   (lists_in_block && sliced && too_large(4 * (slices + 3))) ||
                   (lists_in_block && binned && too_large(8 * slices)),
               ErrorCode::uniform_block_too_small);
 
     if (options.viewport_corner) question.constants.push_back("corner");
     if (table) question.wanted.push_back({"tiles", options.tiles});
-    question.wanted.push_back({"lists", options.lists});
+    question.wanted.push_back({masks ? "masks" : "lists", options.lists});
     if (sliced) question.wanted.push_back({"slices", options.slices});
     if (binned) question.wanted.push_back({"bins", options.bins});
     question.names = {"tile", "cursor", "begin", "next"};

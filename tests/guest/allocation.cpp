@@ -4,6 +4,9 @@
 
 #include <lightbin/budget.hpp>
 #include <lightbin/grid_union.hpp>
+#include <lightbin/masks.hpp>
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <cstddef>
 #include <random>
@@ -110,6 +113,18 @@ TEST_CASE("nor does one that has threads and fewer lights the second time") {
         scene.lights.pop_back();
         CHECK(allocations_in([&] { (void)*binner.bin(scene.view, scene.lights, {}, parallel); }) == 0);
     }
+}
+
+TEST_CASE("a warm MaskBinner does not allocate") {
+    const Scene scene(640, 360, 500), smaller(320, 200, 300);
+    MaskBinner binner;
+    const auto bin = [&](const Scene& of) {
+        (void)*binner.bin(of.view, of.lights);
+        (void)*binner.bin(of.view, world_space(of.lights, glm::mat4(1.0f)), of.slices);
+    };
+    CHECK(allocations_in([&] { bin(scene); }) > 0);
+    CHECK(allocations_in([&] { bin(smaller); }) == 0);
+    CHECK(allocations_in([&] { bin(scene); }) == 0);
 }
 
 TEST_CASE("making a view and reducing a depth buffer never allocate") {

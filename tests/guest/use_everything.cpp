@@ -7,6 +7,7 @@
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader_cull.hpp>
 #include <lightbin/shader_reduce.hpp>
 #include <lightbin/spot.hpp>
@@ -122,6 +123,11 @@ void use_coverage(Hash& hash, const View& view, const auto& lights, const std::v
         for (const float number : {light.nearest, light.farthest, light.pixels})
             hash.add(std::bit_cast<std::uint32_t>(number));
     }
+    MaskBinner masks;
+    for (const std::uint32_t word : value_of(masks.bin(view, lights)).words())
+        hash.add(word);
+    for (const std::uint32_t word : value_of(masks.bin(view, lights, value_of(Slices::linear(5, 0, 50)))).words())
+        hash.add(word);
     Budget<std::uint16_t> budget;
     const auto limited = value_of(budget.limit(grid, weights, {.per_cell = 9, .per_frame = 500}));
     hash.add(limited.grid);

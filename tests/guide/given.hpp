@@ -4,6 +4,7 @@
 #include <lightbin/lightbin.hpp>
 
 #include <lightbin/advise.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/shader_cull.hpp>
 

@@ -42,14 +42,16 @@ constexpr int result_binding = 2;  // compute
 /// What is drawn is wider and higher than the viewport by so many pixels, which have no lights.
 constexpr int beyond = 3;
 
-/// The lights that a check goes through: in large pictures few, as it does so in every pixel.
-inline std::uint32_t checked_lights(std::uint32_t width) {
-    return width > 100 ? 8 : 3000;
+/// The lights that a check goes through: in large pictures few, as it does so in every pixel. Masks with z-bins are
+/// searched for each of them, and Mesa's llvmpipe ends a shader's loops after 65,535 rounds.
+inline std::uint32_t checked_lights(const lightbin::ShaderOptions& options, std::uint32_t width) {
+    return width > 100 ? 8 : options.masks ? 100 : 3000;
 }
 
 /// How many lights there are.
 inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) {
     using lightbin::IdWidth;
+    if (options.masks) return 2000;
     return options.format.ids == IdWidth::u8 ? 200 : options.format.ids == IdWidth::u16 ? 50000 : 100000;
 }
 
@@ -131,7 +133,7 @@ private:
     }
 
     std::string read_list() const {
-        const std::string lights = number(checked_lights(width_));
+        const std::string lights = number(checked_lights(options_, width_));
         std::string text = depth_bits();
         if (options_.slicing != Slicing::none && options_.heat_map && dialect_.webgpu)  // it hides WGSL's
             text += "\nfloat log2(float x) {\n"
@@ -186,7 +188,7 @@ private:
         if (options_.list_check)
             text += begin_missing(lights) +
                     "            listed += other.id + 1u;\n        }\n    }\n    if (listed != " +
-                    number(checked_lights(width_) * (checked_lights(width_) + 1) / 2) +
+                    number(checked_lights(options_, width_) * (checked_lights(options_, width_) + 1) / 2) +
                     ") { hash += 64u; }\n";
         if (options_.window)
             text += "    if ($window(3.0, 3.0) != 0.0 || $window(0.0, 3.0) != 1.0 || "

@@ -6,6 +6,7 @@
 #include "reader_text.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 
 #include <algorithm>
@@ -48,6 +49,10 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
                         every.push_back(options);
                     }
             }
+        if (options.slicing == Slicing::clusters || options.views > 1) continue;
+        every.push_back(options);
+        every.back().format = {};
+        every.back().masks = true;
     }
     return every;
 }
@@ -110,6 +115,7 @@ inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLang
 inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
     std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
+    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return list.masks; });
     for (std::size_t i = 0; i < every.size(); ++i) {
         every[i].views = 2;
         every[i].wave_loop = waves && i % 2 == 1;
@@ -141,8 +147,8 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
 }
 
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
-/// behind the eye.
-inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
+/// behind the eye. `copies` of each in view are there, with other ids.
+inline std::vector<lightbin::Sphere> reader_lights(std::size_t count, std::size_t copies) {
     std::mt19937 engine(5);
     const auto number = [&](float low, float high) {
         return low + (high - low) * static_cast<float>(engine() >> 8) / 16777216.0f;
@@ -150,8 +156,10 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     std::vector<lightbin::Sphere> lights(count, {0, 0, 5, 1});
     for (std::size_t i = 1; i <= 40; ++i) {
         const float z = -number(2, 20);
-        lights[count * ((i + 1) / 2) / 20 - 1 - i % 2] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
-                                                          number(0.05f, 0.2f) * -z};
+        const std::size_t last = count * ((i + 1) / 2) / 20 - 1 - i % 2;
+        lights[last] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z, number(0.05f, 0.2f) * -z};
+        for (std::size_t copy = 1; copy < copies; ++copy)
+            lights[last - 10 * copy] = lights[last];
     }
     return lights;
 }
@@ -184,7 +192,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     constexpr Options of_binner = {.slicing = slicing};
     const Slices slices = reader_slices();
     std::vector<Binner<of_binner>> binners(options.views);
-    const std::vector<Sphere> spheres = reader_lights(reader_light_count(options));
+    const std::vector<Sphere> spheres = reader_lights(reader_light_count(options), options.masks ? 8 : 1);
     std::vector<View> views;
     std::vector<ShaderView> view_constants;
     std::vector<LightGrid<std::uint32_t>> grids;
@@ -233,6 +241,9 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
     ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
+    MaskBinner mask_binner;
+    const auto masks = slicing == Slicing::z_bins ? mask_binner.bin(views[0], spheres, slices)
+                                                  : mask_binner.bin(views[0], spheres);
     BuilderData data;
     data.put("grid", std::span(&constants, 1));
     data.put("corner", std::span(&constants.corner_x, 2));
@@ -242,6 +253,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     data.put("lists", lists);
     data.put("slices", shader_slices(slices));
     data.put("bins", bins);
+    data.put("masks", masks->words());
     for (const ShaderBinding& binding : snippet->bindings) {
         job.inputs.push_back(data.input(binding, options.prefix));
         if (binding.resource == ShaderResource::texture_2d) fit_texture(job.inputs.back(), grid->tiles_x());
@@ -272,8 +284,10 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
                 if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
                 if (id < bin.least || id > bin.greatest) continue;
-                hash = (hash ^ id) * 16777619u;
-                sum += ++count * id;
+                const std::uint32_t light =
+                    options.masks && slicing == Slicing::z_bins ? grids[view].ranks().order[id] : id;
+                hash = (hash ^ light) * 16777619u;
+                sum += ++count * light;
             }
             for (const std::uint32_t word : {tx + (ty << 16), count, hash, sum})
                 job.expected.push_back(word);
@@ -345,7 +359,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
-        if (!few && list.format.ids == lightbin::IdWidth::u16) add(large);
+        if (!few && (list.masks || list.format.ids == lightbin::IdWidth::u16)) add(large);
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned place = 0;

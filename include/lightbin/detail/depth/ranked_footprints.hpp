@@ -20,8 +20,15 @@ public:
     /// kernel  find_depth_buckets() for the lights' kind
     void order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
                const Slices& slices) {
-        run_ = {0, footprints.visible()};
+        rank(kernel, view, footprints, slices);
         area_ = footprints.area();
+        gather_lights(footprints.arrays());
+    }
+
+    /// Finds what order() does, but leaves the footprints where they are: only sources() and bins() are valid after it.
+    void rank(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+              const Slices& slices) {
+        run_ = {0, footprints.visible()};
         bin_count_ = static_cast<std::size_t>(slices.count());
         const std::uint32_t size = footprints.runs().back().end;
         std::uint32_t *const ends = ends_.reserve(bin_count_), *const sources = sources_.reserve(run_.end);
@@ -48,12 +55,15 @@ public:
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 sources[ends[first_bins[i]]++] = i;
-        gather_lights(footprints.arrays());
         find_ranges();
     }
 
+    /// For each rank, the index of the footprint in the arrays that were given.
+    std::span<const std::uint32_t> sources() const { return {sources_.data(), run_.end}; }
+    std::span<const BinRange> bins() const { return {bins_.data(), bin_count_}; }
+
     detail::FootprintSlice all() const { return {arrays_, {&run_, 1}, run_.end, area_}; }
-    LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
+    LightRanks ranks() const { return {{order_.data(), run_.end}, bins()}; }
 
 private:
     /// Writes the sorted footprints array by array, so that few cache lines are read in random order at a time.

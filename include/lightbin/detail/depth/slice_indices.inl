@@ -42,11 +42,8 @@ inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const 
             nearest = load_floats(out.nearest + i);
             farthest = load_floats(out.farthest + i);
         } else {
-            Sphere spheres[lanes];
-            for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                spheres[lane] = load_sphere(lights.view_lights.spheres + ids[i + lane]);
             Floats x, y, z, radius;
-            load_spheres(spheres, x, y, z, radius);
+            load_listed_spheres(lights.view_lights.spheres, ids + i, x, y, z, radius);
             z = z * broadcast(z_sign);
             nearest = z - radius;
             farthest = z + radius;

@@ -60,8 +60,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const Dialect& dialect = writer.dialect;
     const ListFormat& format = options.format;
     const bool textures = options.storage == ListStorage::texture_2d;
+    const bool masks = options.masks;
     // Every device allows a uniform block of 16384 bytes. It holds the constants of `check_view` for so many views.
-    constexpr std::uint32_t max_views = 16384 / sizeof(ShaderView);
+    const std::uint32_t max_views = masks ? 1 : 16384 / sizeof(ShaderView);
     if (const auto error = refuse_common(
             options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
             {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,
@@ -73,12 +74,13 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
               {ErrorCode::no_wave_operations}},
              {options.views < 1 || options.views > max_views,
               {ErrorCode::views_out_of_range, options.views, max_views}},
+             {masks && options.slicing == Slicing::clusters, {ErrorCode::no_such_slicing_shader}},
              {options.tile_size < 0,
               {ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)}},
              {textures && (options.texture_width < 1 || options.texture_width > 16384),
               {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
         return *error;
-    if (const auto error = refuse(format)) return *error;
+    if (const auto error = refuse(format); error && !masks) return *error;
     // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
     const std::uint64_t limit =
         options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
@@ -86,7 +88,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
                                              byte_address};
     const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
-    const bool table = format.encoding == ListEncoding::offset_count;
+    const bool table = !masks && format.encoding == ListEncoding::offset_count;
     // In buffer textures and textures each id has a texel unless ids are packed.
     const bool one_id = !options.packed_ids && (resource == texel_buffer || textures);
     const TexelFormat texel = one_id && format.ids == IdWidth::u8    ? TexelFormat::r8ui
@@ -104,12 +106,15 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (table)
         buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
                            TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
-    buffers.push_back({"lists", resource, options.lists, texel,
-                       encoded_bytes(format, options.max_tiles, options.max_entries), width});
+    if (masks)
+        buffers.push_back({"masks", resource, options.lists, TexelFormat::r32ui, limit, width});
+    else
+        buffers.push_back({"lists", resource, options.lists, texel,
+                           encoded_bytes(format, options.max_tiles, options.max_entries), width});
     if (sliced)
         buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
                            options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
-    if (binned)
+    if (binned && !masks)
         buffers.push_back({"bins", resource, options.bins, TexelFormat::rg32ui,
                            8ull * options.max_slices * options.views, width});
     for (const ShaderBuffer& buffer : buffers)
@@ -163,19 +168,27 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
 )");
 
     // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
-    writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
-               (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
-                : format.ids == IdWidth::u16         ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
-                                                     : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
-               ";\n}\n");
+    if (!masks)
+        writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
+                   (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
+                    : format.ids == IdWidth::u16         ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
+                                                         : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
+                   ";\n}\n");
 
     // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
     // nothing: the constants may be unset, or describe a smaller image or other tiles.
     writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
-    if (binned) writer.add("    uint last;\n");
+    if (masks)
+        writer.add("    uint bits;\n    uvec2 masks;\n    uint ids;\n" + std::string(binned ? "    uvec2 bin;\n" : ""));
+    else if (binned)
+        writer.add("    uint last;\n");
     writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
                "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n    c.id = 0u;\n");
-    if (binned) writer.add("    c.last = 0u;\n");
+    if (masks)
+        writer.add("    c.bits = 0u;\n    c.masks = uvec2(0u, 0u);\n    c.ids = 0u;\n" +
+                   std::string(binned ? "    c.bin = uvec2(0u, 0u);\n" : ""));
+    else if (binned)
+        writer.add("    c.last = 0u;\n");
     writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
                is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
     if (sliced) writer.add("        uint slice = $slice(view_depth);\n");
@@ -185,9 +198,21 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (clusters || several)
         writer.add(std::string("        tile.y += ") + (clusters ? "slice" : "view") +
                    " * (($grid.w - 1u) / " + size + " + 1u);\n");
-    if (binned) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
-    writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
-    if (table)
+    if (binned && !masks) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
+    if (!masks) writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
+    // Of masks, `at` and `end` are words, and `masks` is where those of the column and the row begin: see
+    // LightMasks::words(). A bin without lights is {1, 0}, of which no bit is left.
+    if (masks)
+        writer.add("        uint words = $masks[0u];\n"
+                   "        c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);\n"
+                   "        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / " + size + ") * words;\n" +
+                   std::string(binned ? R"(        uint bin = c.ids + 32u * words + 2u * slice;
+        c.bin = uvec2($masks[bin], $masks[bin + 1u]);
+        c.at = c.bin.x >> 5u;
+        c.end = (c.bin.y >> 5u) + 1u;
+)"
+                                      : "        c.end = words;\n"));
+    else if (table)
         writer.add("        uvec2 list = " +
                    (textures && !options.tiles_in_uniform_block
                         ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
@@ -207,21 +232,93 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
             else { end = middle; }
         }
 )");
-    else if (binned)
+    else if (binned && !masks)
         writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
 
     // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
     // result that was not set where a function returns early.
-    writer.add("    }\n    return c;\n}\n\nbool $own_next(inout $own_cursor c) {\n");
-    writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
-               "        c.at += 1u;\n");
-    if (!table)
+    writer.add("    }\n    return c;\n}\n");
+    // The next light of masks. Without findLSB the exponent of the lowest bit, converted to float, is its index.
+    const std::string next_bit = R"(    bool more = c.bits != 0u;
+    if (more) {
+        uint bit = )" + std::string(dialect.storage_buffers
+                                        ? "uint(findLSB(c.bits))"
+                                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                                 R"(;
+        c.bits &= c.bits - 1u;
+        c.id = $masks[c.ids + 32u * (c.at - 1u) + bit];
+)";
+    // `lights_at` returns the bits of the word that a cursor is at; with z-bins only those of the bin's range.
+    if (masks)
+        writer.add("\nuint $lights_at($own_cursor c) {\n"
+                   "    uint bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];\n" +
+                   std::string(binned ? R"(    if (c.at == c.bin.x >> 5u) { bits &= 0xffffffffu << (c.bin.x & 31u); }
+    if (c.at == c.bin.y >> 5u) { bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }
+)"
+                                      : "") +
+                   "    return bits;\n}\n");
+    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
+    if (masks)
+        writer.add(R"(    while (c.bits == 0u && c.at < c.end) {
+        c.bits = $lights_at(c);
+        c.at += 1u;
+    }
+)" + next_bit);
+    else
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
+                   "        c.at += 1u;\n");
+    if (!table && !masks)
         writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
-    if (binned) writer.add("        more = more && c.id <= c.last;\n");
+    if (binned && !masks) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
 
-    // The cursor of a wave. The wave's next light is the least id among the next lights of its lanes.
-    if (options.wave_loop)
+    // The cursor of a wave goes with all its lanes through the words that any of them looks at, and through the lights
+    // that any of them has there.
+    if (options.wave_loop && masks)
+        writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    uint at;
+    uint end;
+    uint bits;
+    uint ids;
+    $own_cursor lane;
+};
+
+$cursor $begin)" + of_list + R"(    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    c.bits = 0u;
+    $own_cursor lane = $own_begin)" + list_arguments + R"(;
+    c.lane = lane;
+    uint first = 0xffffffffu;
+    if (lane.at < lane.end) { first = lane.at; }
+    c.at = subgroupMin(first);
+    c.end = subgroupMax(lane.end);
+    c.ids = subgroupMax(lane.ids);
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor lane = c.lane;
+    while (c.bits == 0u && c.at < c.end) {
+        lane.bits = 0u;
+        if (c.at == lane.at && lane.at < lane.end) {
+            lane.bits = $lights_at(lane);
+            lane.at += 1u;
+        }
+        c.bits = subgroupOr(lane.bits);
+        c.at += 1u;
+    }
+    c.lane = lane;
+)" + next_bit + R"(        c.own = ((lane.bits >> bit) & 1u) != 0u;
+    }
+    return more;
+}
+)");
+    // The wave's next light in lists is the least id among the next lights of its lanes.
+    else if (options.wave_loop)
         writer.add(R"(
 struct $cursor {
     uint id;
@@ -293,7 +390,33 @@ float $window(float apart, float range) {
                    "bool $check_view(uvec2 pixel, vec3 position" + view_parameter + ") {\n" + here + check);
     }
     // As a list's ids ascend, one pass over all ids, with the list's cursor beside it, finds those that the list lacks.
-    if (options.list_check)
+    // Masks with z-bins have an order of their own, and are searched for each id.
+    if (options.list_check && masks && binned)
+        writer.add(R"(
+// A light, and whether the pixel's masks lack it.
+struct $missing {
+    uint id;
+    bool lacked;
+    $own_cursor first;
+};
+
+$missing $begin_missing)" + of_list + R"(    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.first = $own_begin)" + list_arguments + R"(;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.first;
+    bool more = $own_next(&listed);
+    while (more && listed.id != m.id) { more = $own_next(&listed); }
+    m.lacked = !more;
+    return m.id < lights;
+}
+)");
+    else if (options.list_check)
         writer.add(R"(
 // A light, and whether the pixel's list lacks it.
 struct $missing {

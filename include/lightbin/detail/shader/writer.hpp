@@ -56,6 +56,8 @@ inline ShaderWord shader_word(std::string_view word) {
         {"atomicAnd", "InterlockedAnd", "atomicAnd"},
         {"atomicAdd", "InterlockedAdd", "atomicAdd"},
         {"subgroupMin", "WaveActiveMin", "subgroupMin"},
+        {"subgroupMax", "WaveActiveMax", "subgroupMax"},
+        {"subgroupOr", "WaveActiveBitOr", "subgroupOr"},
         {"sync_group", "GroupMemoryBarrierWithGroupSync", "workgroupBarrier"},
     };
     for (const ShaderWord& row : words)

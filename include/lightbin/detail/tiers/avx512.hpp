@@ -80,6 +80,21 @@ inline Floats load_quads(const char* from, std::size_t stride) {  // a vec4, and
     const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
     return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
 }
+/// As in common.inl. A vector would have to wait for the stores of the spheres that are copied there to memory for it.
+template <class Index>
+void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
+                         Floats& radius) {
+    const auto one = [=](std::uint32_t i) { return _mm_loadu_ps(&spheres[indices[i]].x); };
+    const auto four = [=](std::uint32_t i) {
+        const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(one(i)), one(i + 4), 1);
+        return _mm512_insertf32x4(_mm512_insertf32x4(two, one(i + 8), 2), one(i + 12), 3);
+    };
+    x = four(0);
+    y = four(1);
+    z = four(2);
+    radius = four(3);
+    transpose(x, y, z, radius);
+}
 inline void store_quads(char* to, std::size_t stride, __m512 quads) {
     const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
     _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));

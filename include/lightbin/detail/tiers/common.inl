@@ -86,4 +86,13 @@ LIGHTBIN_INLINE const Light* whole_vector(const Light* from, std::uint32_t used,
     return padded;
 }
 
+/// Loads the spheres with the indices from `indices` on as four vectors.
+template <class Index, class Reals>
+void load_listed_spheres(const Sphere* spheres, const Index* indices, Reals& x, Reals& y, Reals& z, Reals& radius) {
+    Sphere some[lanes];
+    for (std::uint32_t i = 0; i < lanes; ++i)
+        some[i] = load_sphere(spheres + indices[i]);
+    load_spheres(some, x, y, z, radius);
+}
+
 }}}}  // namespace lightbin::detail
