@@ -15,9 +15,6 @@
 #   error [--quick] [SCENE.glb ...]
 #       What each depth test and clusters list beyond the exact set, and what they miss; of single spots by half angle and
 #       of single boxes by shape, too. Writes build/bench/error.csv, spots_error.csv and boxes_error.csv.
-#   c_side [SECONDS]
-#       Whole builds through lightbin.h over the same in C++, in turns. Each line is the median of five programs that
-#       differ in the order of their functions; each takes half a second, or so many, for it. Three minutes.
 #   stability [--quick]
 #       How far off the screen bounds of lights are under stiff and extreme conditions: the library's and the textbooks', in
 #       float and in double. A miss by the library is an error. Writes build/bench/stability.html and stability.csv.
@@ -37,7 +34,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | frames | stability | gpu | c_side)
+binning | report | error | frames | stability | gpu)
     program=$1
     shift
     ;;
@@ -46,7 +43,6 @@ options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
 binning) options="--quick --filter=..." words="" pattern="" ;;
 frames) options="--quick --counts --into=..." ;;
-c_side) options="" words="a number" pattern='[0-9.]+' ;;
 gpu) words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
@@ -54,7 +50,6 @@ forms=$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')
 takes "$program, $options${options:+${words:+, }}$words" "$forms${forms:+${pattern:+|}}$pattern" "$@"
 
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtinygltf-dev"
-[ $program != c_side ] || packages="$packages lld"
 case $program in
 frames | gpu) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
 esac
@@ -101,12 +96,5 @@ frames)
     exit
     ;;
 gpu) ./bench/gpu/gpu "$@" ;;
-c_side)
-    for order in 1 2 3 4 5; do
-        "./bench/c_side_$order" "$@" >c_side_$order.csv
-        echo "$me: measured with the functions in order $order of 5"
-    done
-    awk -F, -f ../../bench/c_side.awk c_side_*.csv
-    ;;
 *) "./bench/$program" "$@" ;;
 esac

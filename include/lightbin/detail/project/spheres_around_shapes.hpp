@@ -88,7 +88,8 @@ inline Sphere sphere_of_corners(const Box& box) {
 inline Sphere bounding_sphere(const Box& box) {
     const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
     const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);
-    if (!finite || !(own.radius >= 0) || !(corners.radius > 0)) return detail::unlit_sphere(own.radius);
+    if (!finite || !(own.radius >= 0) || !(corners.radius > 0))
+        return detail::unlit_sphere(static_cast<double>(own.radius));
     return corners.radius < own.radius ? corners : own;
 }
 

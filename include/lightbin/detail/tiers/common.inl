@@ -44,12 +44,12 @@ inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// Returns a vector of floats or doubles, all of which are the number `each`, which float represents exactly.
+/// Returns a vector of floats, or a double, all of whose lanes are the number `each`, which float represents exactly.
 template <class Reals> Reals all(double each) {
     if constexpr (std::is_same_v<Reals, Floats>)
         return broadcast(static_cast<float>(each));
     else
-        return broadcast(each);
+        return each;
 }
 template <class Reals> Reals dot(const Reals (&a)[3], const Reals (&b)[3]) {
     return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
