@@ -122,7 +122,9 @@ TEST_CASE("several views: the constants of each are a ShaderView, and how many t
         return ShaderOptions{.language = ShaderLanguage::glsl_vulkan, .views = views, .view_check = true};
     };
     const auto bound = shader_snippet(of_views(3))->bindings;
-    const auto image = std::ranges::find(bound, std::string("lightbin_image_block"), &ShaderBinding::name);
+    const auto image = std::find_if(bound.begin(), bound.end(), [](const ShaderBinding& binding) {
+        return binding.name == "lightbin_image_block";
+    });
     REQUIRE(image != bound.end());
     CHECK(image->bytes == 3 * sizeof(ShaderView));
     CHECK(has(text_of(of_views(512)), "view < 512u"));
