@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere or the spot
+// What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere, spot or box
 // meets the tile's cell.
 //
 // Decided in double precision where that proves the answer, else in rationals; of a spot, by a certificate.
 #pragma once
 
+#include "exact/box.hpp"
 #include "exact/spot.hpp"
 #include "exact/truth.hpp"
 #include "raster.hpp"
 #include "spot_filter.hpp"
 
+#include <lightbin/box.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/z_bounds.hpp>
 
@@ -32,7 +34,7 @@ enum Fact : std::uint32_t {
     in_cell = 2,     ///< ... between the tile's minimum and maximum depth: the exact set
 };
 
-/// A light in whose rectangle, by exact arithmetic, a tile lies; a spot that meets the tile.
+/// A light that meets a tile.
 struct Pair {
     std::uint32_t id;
     std::uint32_t facts;
@@ -80,31 +82,13 @@ public:
                 {nearly(truth_.rows(y, y + 1).low.slope), nearly(truth_.rows(y, y + 1).high.slope)});
     }
 
-    /// Decides every pair of a tile and a light. Gap spans may be empty.
-    ExactPairs pairs(const Lights& lights, const lightbin::ZBounds& bounds) {
-        ExactPairs result = no_pairs(lights.size());
-        const std::uint64_t before = truth_.by_rationals();
-        for (std::size_t id = 0; id < lights.size(); ++id)
-            add_ball(static_cast<std::uint32_t>(id),
-                     {static_cast<double>(lights[id].x), static_cast<double>(lights[id].y),
-                      -static_cast<double>(lights[id].z), static_cast<double>(lights[id].w)},
-                     bounds, result);
-        result.by_rationals = truth_.by_rationals() - before;
-        return result;
-    }
-
-    /// The same of spots. No light may be bad.
-    ExactPairs pairs(const Spots& lights, const lightbin::ZBounds& bounds) {
-        ExactPairs result = no_pairs(lights.size());
+    /// Decides every pair of a tile and a light, none of them bad.
+    template <class AnyLights> ExactPairs pairs(const AnyLights& lights, const lightbin::ZBounds& bounds) {
+        const std::size_t tiles = tile_at(0, truth_.oracle.tiles_y());
+        ExactPairs result = {std::vector<std::vector<Pair>>(tiles), tiles * lights.size()};
         const std::uint64_t before = truth_.by_rationals() + spots_by_rationals_, open_before = open_;
-        for (std::size_t i = 0; i < lights.size(); ++i) {
-            const auto id = static_cast<std::uint32_t>(i);
-            const SpotSubject spot(lights[i]);
-            if (spot.exact.ball.all)
-                add_ball(id, spot.ball, bounds, result);
-            else
-                add_spot(id, spot, bounds, result);
-        }
+        for (std::size_t id = 0; id < lights.size(); ++id)
+            add(static_cast<std::uint32_t>(id), subject(lights[id]), bounds, result);
         result.by_rationals = truth_.by_rationals() + spots_by_rationals_ - before;
         result.open = open_ - open_before;
         return result;
@@ -125,12 +109,18 @@ private:
         }
     };
 
-    struct SpotSubject {
+    /// A ball; what other lights are lies within theirs.
+    struct Subject {
+        Ball ball;
+        template <class Light>
+        explicit Subject(const Light& light)
+            : ball{static_cast<double>(light.x), static_cast<double>(light.y), -static_cast<double>(light.z),
+                   static_cast<double>(light.radius)} {}
+    };
+    struct SpotSubject : Subject {
         explicit SpotSubject(const lightbin::Spot& s)
-            : ball{static_cast<double>(s.x), static_cast<double>(s.y), -static_cast<double>(s.z),
-                   static_cast<double>(s.radius)},
-              exact(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z,
-                                       s.cos_half_angle)),
+            : Subject(s), exact(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z,
+                                                   s.cos_half_angle)),
               flat(s) {
             if (s.cos_half_angle >= 0) return;
             const glm::dvec3 axis = glm::normalize(glm::dvec3(s.axis_x, s.axis_y, s.axis_z)),
@@ -146,18 +136,31 @@ private:
                 halves.emplace_back(lightbin::Spot{s.x, s.y, s.z, s.radius, half.x, half.y, half.z, 0});
             }
         }
-        Ball ball;
         oracle::ExactSpot exact;
         oracle::FlatSpot flat;
         std::vector<SpotSubject>
             halves;  ///< of a half angle above 90 degrees: half balls that fill it but for slivers
     };
-
-    Range within_view(float min, float max) const {
-        return {std::max(static_cast<double>(min), truth_.range.min),
-                std::min(static_cast<double>(max), truth_.range.max)};
+    struct BoxSubject : Subject {
+        BoxSubject(const oracle::Oracle& oracle, const oracle::BoxLight& box)
+            : Subject(box), light(box), flat(oracle::flat_box(box, [&](const oracle::Vector& corner) {
+                  return oracle.in_camera({corner, 0});
+              })) {}
+        oracle::BoxLight light;
+        oracle::FlatBox flat;
+        mutable std::optional<oracle::ExactBox> exact;  ///< once it is asked for: its hull takes a while
+    };
+    Subject subject(const lightbin::Sphere& ball) const { return Subject(ball); }
+    Subject subject(const glm::vec4& ball) const {
+        return Subject(lightbin::Sphere{ball.x, ball.y, ball.z, ball.w});
     }
-    static bool empty(const Range& range) { return !(range.min <= range.max); }
+    SpotSubject subject(const lightbin::Spot& spot) const { return SpotSubject(spot); }
+    BoxSubject subject(const lightbin::Box& box) const {
+        oracle::BoxLight light = {box.x, box.y,    box.z, box.radius, {box.box_x, box.box_y, box.box_z},
+                                  {},    box.taper};
+        std::copy(&box.half_axes[0][0], &box.half_axes[0][0] + 9, &light.half_axes[0][0]);
+        return {truth_.oracle, light};
+    }
 
     /// The columns (rows) of tiles whose wedges the ball meets. They are neighbours, as the ball is convex.
     template <class Meets> static Span met(int count, Meets meets) {
@@ -169,70 +172,41 @@ private:
         return span;
     }
 
-    struct Block {
-        Span across, up;
-    };
-    Block rectangle(const Ball& ball) {
-        return {met(truth_.oracle.tiles_x(),
-                    [&](int x) { return truth_.meets_columns(x, x + 1, ball, Exactly{ball}); }),
-                met(truth_.oracle.tiles_y(),
-                    [&](int y) { return truth_.meets_rows(y, y + 1, ball, Exactly{ball}); })};
-    }
-    ExactPairs no_pairs(std::size_t lights) const {
-        const std::size_t tiles = tile_at(0, truth_.oracle.tiles_y());
-        return {std::vector<std::vector<Pair>>(tiles), tiles * lights};
-    }
     std::size_t tile_at(int x, int y) const {
         return static_cast<std::size_t>(y * truth_.oracle.tiles_x() + x);
     }
 
-    void add_ball(std::uint32_t id, const Ball& ball, const lightbin::ZBounds& bounds, ExactPairs& result) {
-        const Block block = rectangle(ball);
-        for (int y = block.up.first; y < block.up.end; ++y)
-            for (int x = block.across.first; x < block.across.end; ++x)
-                result.tiles[tile_at(x, y)].push_back({id, facts(ball, x, y, tile_at(x, y), bounds)});
-    }
-
     /// In a row of tiles those that it meets are neighbours, as it is convex.
-    void add_spot(std::uint32_t id, const SpotSubject& spot, const lightbin::ZBounds& bounds,
-                  ExactPairs& result) {
-        const Block block = rectangle(spot.ball);
-        for (int y = block.up.first; y < block.up.end; ++y) {
-            const auto meets_tile = [&](int x) {
-                return meets(block.across.first + x, y, truth_.range, spot);
-            };
-            const Span row = met(block.across.end - block.across.first, meets_tile);
-            for (int x = block.across.first + row.first; x < block.across.first + row.end; ++x)
-                result.tiles[tile_at(x, y)].push_back({id, facts(spot, x, y, tile_at(x, y), bounds)});
+    template <class AnySubject>
+    void add(std::uint32_t id, const AnySubject& light, const lightbin::ZBounds& bounds, ExactPairs& result) {
+        const Exactly exactly{light.ball};
+        const auto in_column = [&](int x) { return truth_.meets_columns(x, x + 1, light.ball, exactly); };
+        const auto in_row = [&](int y) { return truth_.meets_rows(y, y + 1, light.ball, exactly); };
+        const Span across = met(truth_.oracle.tiles_x(), in_column),
+                   up = met(truth_.oracle.tiles_y(), in_row);
+        for (int y = up.first; y < up.end; ++y) {
+            const Span row = met(across.end - across.first,
+                                 [&](int x) { return meets(across.first + x, y, truth_.range, light); });
+            for (int x = across.first + row.first; x < across.first + row.end; ++x) {
+                const std::size_t tile = tile_at(x, y);
+                const float min = bounds.min[tile], max = bounds.max[tile];
+                const Range whole = {std::max(static_cast<double>(min), truth_.range.min),
+                                     std::min(static_cast<double>(max), truth_.range.max)};
+                const bool cell = min <= max && whole.min <= whole.max && meets(x, y, whole, light);
+                result.tiles[tile].push_back({id, in_pyramid | (cell ? +in_cell : 0)});
+            }
         }
     }
 
-    /// Of a tile that it meets.
-    std::uint32_t facts(const SpotSubject& spot, int x, int y, std::size_t tile,
-                        const lightbin::ZBounds& bounds) {
-        const float min = bounds.min[tile], max = bounds.max[tile];
-        const Range whole = within_view(min, max);
-        const bool cell = min <= max && !empty(whole) && meets(x, y, whole, spot);
-        return in_pyramid | (cell ? +in_cell : 0);
-    }
-
-    std::uint32_t facts(const Ball& ball, int x, int y, std::size_t tile, const lightbin::ZBounds& bounds) {
-        const float min = bounds.min[tile], max = bounds.max[tile];
-        const bool pyramid = meets(x, y, truth_.range, ball);
-        std::uint32_t facts = pyramid ? +in_pyramid : 0;
-        const Range whole = within_view(min, max);
-        const bool cell = pyramid && min <= max && !empty(whole) && meets(x, y, whole, ball);
-        return facts | (cell ? +in_cell : 0);
-    }
-
     /// Whether the ball meets the cell of tile (x, y) in this range.
-    bool meets(int x, int y, const Range& range, const Ball& ball) {
+    bool meets(int x, int y, const Range& range, const Subject& light) {
         return truth_.meets(
-            {x, x + 1, y, y + 1}, range, ball, [&] { return exact(range); }, Exactly{ball});
+            {x, x + 1, y, y + 1}, range, light.ball, [&] { return exact(range); }, Exactly{light.ball});
     }
     /// Whether the spot does, by double precision, or where that has no answer, and now and then as a check, by a
     /// certificate.
     bool meets(int x, int y, const Range& range, const SpotSubject& spot) {
+        if (spot.exact.ball.all) return meets(x, y, range, static_cast<const Subject&>(spot));
         if (!spot.halves.empty())
             return std::ranges::any_of(spot.halves,
                                        [&](const SpotSubject& half) { return meets(x, y, range, half); });
@@ -249,9 +223,7 @@ private:
         const std::optional<bool> proven = oracle::surely_meets(cell, spot.flat);
         if (proven && ++spot_questions_ % 1009 != 0) return *proven;
         spots_by_rationals_ += !proven;
-        const auto planes = truth_.oracle.half_spaces(truth_.oracle.columns(x, x + 1),
-                                                      truth_.oracle.rows(y, y + 1), exact(range));
-        const std::optional<bool> verdict = oracle::meets(planes, spot.exact);
+        const std::optional<bool> verdict = oracle::meets(planes(x, y, range), spot.exact);
         if (proven && verdict && *proven != *verdict)
             throw std::logic_error("double precision and a certificate disagree");
         if (proven) return *proven;
@@ -259,6 +231,18 @@ private:
         return verdict.value_or(false);
     }
 
+    bool meets(int x, int y, const Range& range, const BoxSubject& box) {
+        if (truth_.filter.apart(x, x + 1, y, y + 1, range, box.ball) ||
+            oracle::apart(truth_.filter, x, x + 1, y, y + 1, range, box.flat))
+            return false;
+        if (!box.exact) box.exact.emplace(box.light);
+        return oracle::meets(planes(x, y, range), *box.exact);
+    }
+
+    std::vector<oracle::HalfSpace> planes(int x, int y, const Range& range) const {
+        const oracle::Oracle& oracle = truth_.oracle;
+        return oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1), exact(range));
+    }
     oracle::Depths exact(const Range& range) const {
         const oracle::Depths& all = truth_.oracle.range();
         return {range.min == truth_.range.min ? *all.min : Rational(range.min),

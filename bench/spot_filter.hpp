@@ -15,6 +15,9 @@
 
 #include <lightbin/spot.hpp>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,27 +28,11 @@
 namespace oracle {
 
 /// A point or vector in the camera's axes: x, y, depth.
-struct Point {
-    double x = 0, y = 0, d = 0;
-};
-inline Point operator+(const Point& a, const Point& b) {
-    return {a.x + b.x, a.y + b.y, a.d + b.d};
-}
-inline Point operator-(const Point& a, const Point& b) {
-    return {a.x - b.x, a.y - b.y, a.d - b.d};
-}
-inline Point operator*(double k, const Point& a) {
-    return {k * a.x, k * a.y, k * a.d};
-}
-inline double dot(const Point& a, const Point& b) {
-    return a.x * b.x + a.y * b.y + a.d * b.d;
-}
-inline double length(const Point& a) {
-    return std::sqrt(dot(a, a));
-}
+using Point = glm::dvec3;
+
 /// Of the coordinates' sizes.
 inline double size_of(const Point& a) {
-    return std::abs(a.x) + std::abs(a.y) + std::abs(a.d);
+    return std::abs(a.x) + std::abs(a.y) + std::abs(a.z);
 }
 
 /// Part of a view frustum: the points between lines through the eye, between two depths.
@@ -54,14 +41,10 @@ struct FlatCell {
     FlatDepths depths;
     double first, last;  ///< depths between which none is outside, however the ends are rounded
 
-    Point corner(bool right, bool up, bool far_end) const {
-        const double d = far_end ? depths.max : depths.min;
-        return {d * (right ? x_high : x_low), d * (up ? y_high : y_low), d};
-    }
     /// The corner with the least n.p.
     Point lowest(const Point& n) const {
         const double x = n.x < 0 ? x_high : x_low, y = n.y < 0 ? y_high : y_low,
-                     d = n.x * x + n.y * y + n.d < 0 ? depths.max : depths.min;
+                     d = n.x * x + n.y * y + n.z < 0 ? depths.max : depths.min;
         return {d * x, d * y, d};
     }
     /// What no corner's coordinates add up to more than.
@@ -75,10 +58,10 @@ struct FlatCell {
     }
     bool surely_has(const Point& p) const {
         const auto between = [&](double low, double high, double at) {
-            const double margin = 0x1p-40 * (std::abs(at) + p.d * std::max(std::abs(low), std::abs(high)));
-            return at - low * p.d > margin && high * p.d - at > margin;
+            const double margin = 0x1p-40 * (std::abs(at) + p.z * std::max(std::abs(low), std::abs(high)));
+            return at - low * p.z > margin && high * p.z - at > margin;
         };
-        return first <= p.d && p.d <= last && between(x_low, x_high, p.x) && between(y_low, y_high, p.y);
+        return first <= p.z && p.z <= last && between(x_low, x_high, p.x) && between(y_low, y_high, p.y);
     }
 };
 
@@ -101,7 +84,7 @@ public:
         const Point aside = n - along * axis_;
         const double across = length(aside);
         if (cosine_ * across <= sine_ * along) return radius_ / length(n) * n;
-        if (cosine_ * along + sine_ * across <= 0) return {};
+        if (cosine_ * along + sine_ * across <= 0) return Point(0);
         return radius_ * (cosine_ * axis_ + sine_ / across * aside);
     }
 
@@ -164,7 +147,7 @@ inline std::optional<std::array<double, 4>> nearest_weights(const std::vector<Co
 /// Some of the corners with their weights, the nearest point of their hull to the spot.
 struct Nearest {
     std::vector<Corner> corners;
-    Point at, off;  ///< of the cell; and from the spot
+    Point at = Point(0), off = Point(0);  ///< of the cell; and from the spot
 };
 
 inline Nearest nearest(const std::vector<Corner>& corners) {
@@ -178,7 +161,7 @@ inline Nearest nearest(const std::vector<Corner>& corners) {
         if (!weights ||
             *std::min_element(weights->begin(), weights->begin() + static_cast<long>(some.size())) < 0)
             continue;
-        Nearest found{some, {}, {}};
+        Nearest found{some};
         for (std::size_t i = 0; i < some.size(); ++i) {
             found.at = found.at + (*weights)[i] * some[i].at;
             found.off = found.off + (*weights)[i] * some[i].off;
