@@ -24,6 +24,9 @@ inline constexpr Setting settings[] = {{"rounding upward", Rounding::upward},
 class Environment {
 public:
     explicit Environment(const Setting& setting) : had_(std::fegetenv(&before_) == 0) {
+#if defined(__x86_64__) || defined(__i386__)
+        vectors_before_ = __builtin_ia32_stmxcsr();
+#endif
         set_rounding(setting.rounding);
 #if defined(__x86_64__) || defined(__i386__)
         // Masks of invalid operations and of divisions by zero; flushing what comes out, and what is read.
@@ -40,6 +43,9 @@ public:
     }
     ~Environment() {
         if (had_) std::fesetenv(&before_);
+#if defined(__x86_64__) || defined(__i386__)
+        __builtin_ia32_ldmxcsr(vectors_before_);  // MinGW's fesetenv() leaves this register as it is
+#endif
     }
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
@@ -67,6 +73,9 @@ private:
         }
     }
 
+#if defined(__x86_64__) || defined(__i386__)
+    unsigned vectors_before_;
+#endif
     std::fenv_t before_;
     bool had_;
 };
