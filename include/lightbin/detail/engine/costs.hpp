@@ -10,10 +10,10 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Returns whether binning by scattering (scatter.hpp) is faster than by lists for blocks of 8x8 tiles (lists.inl), for
 /// lights whose rectangles have `area` tiles in all, each a list entry, in a grid of `tiles` tiles. Visiting all blocks
-/// takes as long as scattering three entries per tile of the grid (with AVX-512 one). The scalar tier always scatters.
+/// takes as long as scattering three entries per tile of the grid. With vectors of 128 bits, scattering takes .6 of the
+/// time with 1,000 lights of 20 tiles, and 1.2 to 1.3 of it with 10,000: as it needs no further kernels, it is used.
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) {
-    if (isa == Isa::scalar) return true;
-    return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
+    return isa <= Isa::simd128 || area < 3 * tiles;
 }
 
 /// Binning by scattering (scatter.hpp) counts the lights of this many rows of tiles at a time, to bound its memory.

@@ -73,11 +73,6 @@ inline Floats ascending_bits(Floats values) {
 inline void store_tiles(std::uint32_t* tiles, Floats values) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm256_cvttps_epi32(values));
 }
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
-    for (int bit = 7; bit >= 0; --bit, all = _mm_add_epi8(all, all))
-        words[bit] = static_cast<unsigned>(_mm_movemask_epi8(all));
-}
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));

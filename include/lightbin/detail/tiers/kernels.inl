@@ -20,7 +20,6 @@
 //   store_tiles                    coordinates of tiles, rounded down to whole numbers
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
 //   split_bits(bytes, words)       transposes 64 bytes to 8 words: bit i of word j is bit j of byte i
-//   split_16_bytes(bytes, words)   as split_bits(), but of 16 bytes
 //   append_16(out, ids, mask)      appends the ids, of 16, whose bit is set; returns the end; writes up to 16 more
 //   append_8(out, ids, mask)       as append_16(), but of 8 ids
 //   Bytes, ByteMask, byte_lanes    a vector of unsigned bytes; a mask with a bit for each; the number of bytes
@@ -64,8 +63,8 @@ struct Tier {
     static DepthKernel depth_kernel() { return column_extremes; }
 
     template <bool depth_test, class Id, bool by_slab, LightKind kind> static BinKernel<Id> bin_kernel() {
-        if constexpr (lanes == 1 && !depth_test)
-            return scatter_lights<Id>;  // as scatter_is_faster() says of the scalar tier
+        if constexpr (lanes <= 4 && !depth_test)
+            return scatter_lights<Id>;  // as scatter_is_faster() says of these tiers
         else
             return bin_blocks<depth_test, Id, by_slab, kind>;
     }

@@ -48,18 +48,12 @@ template <class Real> void store_tiles(std::uint32_t* tiles, Real value) {
     *tiles = static_cast<std::uint32_t>(value);
 }
 
-template <unsigned count> void split_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    for (unsigned i = 0; i < count; i += 8) {
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    for (unsigned i = 0; i < 64; i += 8) {
         const std::uint64_t eight = transpose_bits(load_8_bytes(bytes + i));
         for (unsigned bit = 0; bit < 8; ++bit)
             words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
     }
-}
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    split_bytes<16>(bytes, words);
-}
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    split_bytes<64>(bytes, words);
 }
 /// Every id is stored, but the end moves on only if its bit is set, so that no branch can be mispredicted.
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {

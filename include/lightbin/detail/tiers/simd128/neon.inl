@@ -104,8 +104,3 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
         words[bit] = vgetq_lane_u64(vreinterpretq_u64_u8(vpaddq_u8(sums[0], sums[0])), 0);
     }
 }
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    const uint8x16_t all = load_register(bytes);
-    for (unsigned bit = 0; bit < 8; ++bit)
-        words[bit] = movemask_of_bytes(vtstq_u8(all, broadcast_register(1u << bit)));
-}

@@ -99,8 +99,3 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
         }
     }
 }
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    __m128i all = load_register(bytes);
-    for (int bit = 7; bit >= 0; --bit, all = _mm_add_epi8(all, all))
-        words[bit] = movemask_of_bytes(all);
-}

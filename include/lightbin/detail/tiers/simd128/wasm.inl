@@ -119,8 +119,3 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
         }
     }
 }
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    v128_t all = load_register(bytes);
-    for (int bit = 7; bit >= 0; --bit, all = wasm_i8x16_shl(all, 1))
-        words[bit] = movemask_of_bytes(all);
-}
