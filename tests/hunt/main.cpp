@@ -5,8 +5,8 @@
 //     hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND]
 //
 // A round makes a camera, lights, points in the lights, Z bounds and slices, and looks for the light of each point in
-// the grids of every kind, and in masks. A fault is printed with its seed and round: `hunt --seed S --first R --rounds 1`
-// goes there again.
+// the grids of every kind, and in masks. A fault is printed with its seed and round: `hunt --seed S --first R --rounds
+// 1` goes there again.
 #include "scene.hpp"
 
 #include <lightbin/masks.hpp>
@@ -190,9 +190,9 @@ template <Slicing slicing, Isa isa> lightbin::Result<Grid> bin_masks(const Input
     return out;
 }
 
-/// A Binner's options, compiled for each instruction set; or masks.
+/// A Binner's options, or masks, compiled for each instruction set.
 struct BinnerKind {
-    bool masks;
+    std::string name;
     bool depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bins[4])(const Input&);
@@ -202,20 +202,17 @@ struct BinnerKind {
         constexpr auto on = [](Isa isa) {
             return lightbin::Options{.depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
-        return {false,
+        return {std::string(depth_test ? "depth test, " : "") + to_string(slicing),
                 depth_test,
                 slicing,
                 {bin<on(Isa::scalar)>, bin<on(Isa::simd128)>, bin<on(Isa::avx2)>, bin<on(lightbin::compiled_isa)>}};
     }
     template <Slicing slicing> static BinnerKind of_masks() {
-        return {true,
+        return {std::string("masks, ") + to_string(slicing),
                 false,
                 slicing,
                 {bin_masks<slicing, Isa::scalar>, bin_masks<slicing, Isa::simd128>, bin_masks<slicing, Isa::avx2>,
                  bin_masks<slicing, lightbin::compiled_isa>}};
-    }
-    std::string name() const {
-        return std::string(masks ? "masks, " : depth_test ? "depth test, " : "") + to_string(slicing);
     }
 };
 
@@ -322,15 +319,15 @@ private:
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries &&
                 grid.error().code != ErrorCode::too_many_list_places)
-                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name());
+                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
             return;
         }
-        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name());
+        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name);
         for (int tier = 0; tier < 4; ++tier) {
             if (costly ? !random_.one_in(3) : tier == first && random_.coin()) continue;
             const auto other = binned(tier);
             if (!other || !same(*other, *grid))
-                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name());
+                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name);
         }
     }
 
@@ -433,7 +430,7 @@ int main(int count, char** words) {
         std::printf("FAULT: %s\n", fault.c_str());
     bool all_had_points = true;
     for (const hunt::BinnerKind& kind : kinds) {
-        std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name().c_str());
+        std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name.c_str());
         all_had_points = all_had_points && kind.points > 0;
     }
     // A few rounds may have no point for a kind: 200 must.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Holds a scene's light lists, without and with the depth test, and its masks, without and with z-bins, against the exact
-// truth: the filter's proof where it has one, else rationals. And every instruction set, and the caller's threads, against
-// the scalar ones.
+// Holds a scene's light lists, without and with the depth test, and its masks, without and with z-bins, against the
+// exact truth: the filter's proof where it has one, else rationals. And every instruction set, and the caller's
+// threads, against the scalar ones.
 #pragma once
 
 #include "families.hpp"
@@ -92,7 +92,7 @@ public:
         in_rectangle_ = std::move(in);
     }
 
-    /// A light must not meet the columns and rows whose masks lack it, nor any tile at the depths of a bin that lacks it.
+    /// A light must not meet columns and rows whose masks lack it, nor any tile at the depths of a bin that lacks it.
     void judge_masks(bool with_bins) {
         using lightbin::Isa, lightbin::MaskBinner;
         Random random(scene_.lights.size());

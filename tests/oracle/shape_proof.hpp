@@ -3,7 +3,7 @@
 // of light: on every camera kind, with and without depth test, in view and world space.
 //
 // A question is whether a light meets a cell whose list does not have it. Cells beside a tile that has the light have a
-// number of questions of their own, as a wrong margin shows there first.
+// number of questions of their own, as a wrong margin shows there first. Masks must have the lights of the lists.
 //
 // LIGHTBIN_CAMERAS names the kinds of camera to ask about, world_space among them; LIGHTBIN_ROUNDS=N asks N times as
 // much, each time of other lights: the campaign does.

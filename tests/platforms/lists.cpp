@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// lists [SCENES [threads]]: builds the lists of so many random scenes (60 if not given) by every option, on every instruction set
-// that this machine has and for several threads, which must not change a byte. Prints a hash for each option, and one of
-// all of them: these are the same on every platform. tests/platforms.sh holds them against each other. Then it does so
-// again in every floating-point environment that a caller may have set, of a sixth of the scenes: that must not change a
-// byte either, and what traps must not end the program. With `threads`, Binners of all options work at once, each on a
-// thread of its own, and some whose work several threads share: the thread sanitizer says whether they share more than
-// their input.
+// lists [SCENES [threads]]: builds the lists and masks of so many random scenes (60 if not given) by every option, on
+// every instruction set that this machine has and for several threads, which must not change a byte. Prints a hash for
+// each option, and one of all of them: these are the same on every platform. tests/platforms.sh holds them against each
+// other. Then it does so again in every floating-point environment that a caller may have set, of a sixth of the
+// scenes: that must not change a byte either, and what traps must not end the program. With `threads`, Binners of all
+// options work at once, each on a thread of its own, and some whose work several threads share: the thread sanitizer
+// says whether they share more than their input.
 //
 // Every input is a whole number times a power of two, or a rounded product: fused sums, functions, the distributions of
 // <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and
