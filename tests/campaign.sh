@@ -62,9 +62,9 @@ shapes clang++-19 "-O3 -march=native"
     echo "Made by \`sh tests/campaign.sh $lights $rounds\` on $(date -u +%Y-%m-%d), at commit $(git rev-parse --short HEAD)," \
         "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)."
     echo
-    echo "The families of tests/oracle/families.hpp, $lights lights each, with and without a depth test. Every instruction"
-    echo "set of the machine gave the scalar one's bytes, and so did a run on the caller's threads. A proof says that a"
-    echo "sphere does not meet a tile, or a row of tiles, that lacks it."
+    echo "The families of tests/oracle/families.hpp, $lights lights each: lists with and without a depth test, and masks"
+    echo "with and without z-bins. Every instruction set of the machine gave the scalar one's bytes, and so did a run on the"
+    echo "caller's threads. A proof says that a sphere does not meet a tile, or tiles side by side, that lack it."
     echo
     echo "| build | lights | proofs | in rationals | misses | other complaints |"
     echo "| --- | --- | --- | --- | --- | --- |"

@@ -34,6 +34,7 @@ try() {
         arguments=1000
         ;;
     views | masks) sources="tests/unit/$proof.cpp $work/doctest_main.o" ;;
+    lists) sources="-I. tests/platforms/lists.cpp tests/platforms/garbage.cpp" ;;
     families) sources="tests/oracle/families.cpp -lgmp" arguments=8000 ;;
     *) sources="tests/oracle/$proof.cpp $work/doctest_main.o -lgmp" ;;
     esac

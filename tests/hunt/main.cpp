@@ -5,11 +5,14 @@
 //     hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND]
 //
 // A round makes a camera, lights, points in the lights, Z bounds and slices, and looks for the light of each point in
-// the grids of every kind. A fault is printed with its seed and round: `hunt --seed S --first R --rounds 1` goes there
-// again.
+// the grids of every kind, and in masks. A fault is printed with its seed and round: `hunt --seed S --first R --rounds
+// 1` goes there again.
 #include "scene.hpp"
 
+#include <lightbin/masks.hpp>
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -159,8 +162,37 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     return out;
 }
 
-/// A Binner's options, compiled for each instruction set.
+/// The same of masks: a tile's list has the lights that both its column and its row have.
+template <Slicing slicing, Isa isa> lightbin::Result<Grid> bin_masks(const Input& input) {
+    constexpr bool ranked = slicing == Slicing::z_bins;
+    static lightbin::MaskBinner binner(isa);
+    const auto masks = with_lights(input.scene, [&](const auto& lights) {
+        return ranked ? binner.bin(input.view, lights, input.slices) : binner.bin(input.view, lights);
+    });
+    if (!masks) return masks.error();
+    const auto ids = masks->ids();
+    Grid out;
+    if (ranked) out.order.assign(ids.begin(), ids.end());
+    out.bins.assign(masks->bins().begin(), masks->bins().end());
+    out.counts = masks->light_counts();
+    for (int y = 0; y < masks->tiles_y(); ++y)
+        for (int x = 0; x < masks->tiles_x(); ++x) {
+            const auto column = masks->column(x), row = masks->row(y);
+            const auto begin = static_cast<std::uint32_t>(out.ids.size());
+            for (std::uint32_t word = 0; word < masks->mask_words(); ++word)
+                for (std::uint32_t bits = column[word] & row[word]; bits != 0; bits &= bits - 1) {
+                    const std::uint32_t place = 32 * word + static_cast<std::uint32_t>(std::countr_zero(bits));
+                    out.ids.push_back(ranked ? place : ids[place]);
+                }
+            out.ranges.push_back({begin, static_cast<std::uint32_t>(out.ids.size()) - begin});
+        }
+    if (masks->words().size() > 2'000'000) binner = lightbin::MaskBinner(isa);
+    return out;
+}
+
+/// A Binner's options, or masks, compiled for each instruction set.
 struct BinnerKind {
+    std::string name;
     bool depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bins[4])(const Input&);
@@ -170,19 +202,25 @@ struct BinnerKind {
         constexpr auto on = [](Isa isa) {
             return lightbin::Options{.depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
-        return {depth_test,
+        return {std::string(depth_test ? "depth test, " : "") + to_string(slicing),
+                depth_test,
                 slicing,
                 {bin<on(Isa::scalar)>, bin<on(Isa::simd128)>, bin<on(Isa::avx2)>, bin<on(lightbin::compiled_isa)>}};
     }
-    std::string name() const {
-        return std::string(depth_test ? "depth test, " : "") + to_string(slicing);
+    template <Slicing slicing> static BinnerKind of_masks() {
+        return {std::string("masks, ") + to_string(slicing),
+                false,
+                slicing,
+                {bin_masks<slicing, Isa::scalar>, bin_masks<slicing, Isa::simd128>, bin_masks<slicing, Isa::avx2>,
+                 bin_masks<slicing, lightbin::compiled_isa>}};
     }
 };
 
 std::vector<BinnerKind> binner_kinds() {
     return {BinnerKind::of<false, Slicing::none>(),     BinnerKind::of<true, Slicing::none>(),
             BinnerKind::of<false, Slicing::clusters>(), BinnerKind::of<true, Slicing::clusters>(),
-            BinnerKind::of<false, Slicing::z_bins>(),   BinnerKind::of<true, Slicing::z_bins>()};
+            BinnerKind::of<false, Slicing::z_bins>(),   BinnerKind::of<true, Slicing::z_bins>(),
+            BinnerKind::of_masks<Slicing::none>(),      BinnerKind::of_masks<Slicing::z_bins>()};
 }
 
 class Round {
@@ -281,15 +319,15 @@ private:
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries &&
                 grid.error().code != ErrorCode::too_many_list_places)
-                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name());
+                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
             return;
         }
-        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name());
+        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name);
         for (int tier = 0; tier < 4; ++tier) {
             if (costly ? !random_.one_in(3) : tier == first && random_.coin()) continue;
             const auto other = binned(tier);
             if (!other || !same(*other, *grid))
-                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name());
+                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name);
         }
     }
 
@@ -392,7 +430,7 @@ int main(int count, char** words) {
         std::printf("FAULT: %s\n", fault.c_str());
     bool all_had_points = true;
     for (const hunt::BinnerKind& kind : kinds) {
-        std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name().c_str());
+        std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name.c_str());
         all_had_points = all_had_points && kind.points > 0;
     }
     // A few rounds may have no point for a kind: 200 must.

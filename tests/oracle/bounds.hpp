@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Z bounds for the tests of the depth test.
+// Z bounds for the tests of the depth test, and slices.
 #pragma once
 
 #include "spheres.hpp"
 
+#include <lightbin/slices.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -62,6 +65,22 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             bounds.min[tile] = bounds.max[tile] = tip;
         }
     return bounds;
+}
+
+/// Boundaries of which every second one is where a light begins or ends, as floats have it, or a hair beside; the
+/// others anywhere.
+inline lightbin::Slices slices_at_ends(const Aim& aim, const std::vector<Light>& lights, Random& random) {
+    std::vector<float> boundaries;
+    for (std::size_t i = 0; i < 5 && !lights.empty(); ++i) {
+        const Light& light = lights[random.bits() % lights.size()];
+        float end = aim.depth_of(light) + (random.chance(0.5) ? light.w : -light.w);
+        if (random.chance(0.3)) end = std::nextafter(end, random.chance(0.5) ? 1e38f : -1e38f);
+        if (i % 2 == 1) end = static_cast<float>(random.sign() * random.power_of_two(-12, 12));
+        if (std::isfinite(end)) boundaries.push_back(end);
+    }
+    std::sort(boundaries.begin(), boundaries.end());
+    boundaries.erase(std::unique(boundaries.begin(), boundaries.end()), boundaries.end());
+    return *lightbin::Slices::from_boundaries(boundaries);
 }
 
 }  // namespace oracle

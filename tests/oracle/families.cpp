@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// families LIGHTS: proves that no light is missed in families of stiff and extreme inputs, so many lights each, with
-// and without depth test, on every instruction set. Prints a line a family: lights, proofs, those of them in rationals,
-// misses, complaints.
+// families LIGHTS: proves that no light is missed in families of stiff and extreme inputs, so many lights each: in
+// lists with and without depth test, and in masks, on every instruction set. Prints a line a family: lights, proofs,
+// those of them in rationals, misses, complaints.
 #include "judge.hpp"
 
 #include <cstdlib>

@@ -17,7 +17,7 @@ namespace oracle {
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::vector<float> min, max;  ///< one a tile
+    std::vector<float> min, max;  ///< one a tile, or none
 };
 
 namespace families {
@@ -271,6 +271,15 @@ inline Scene axis_edges(Random& random, std::size_t count) {
     return scene;
 }
 
+/// The most tiles: lists of all would not fit into memory, so there are no Z bounds, either.
+inline Scene most_tiles(Random& random, std::size_t count) {
+    Scene scene{camera_of("", any_lens(1, random), {32768, 32768, 1, random.chance(0.5)}), {}, {}, {}};
+    const Aim aim(scene.camera);
+    for (std::size_t i = 0; i < count; ++i)
+        scene.lights.push_back(any_light(aim, random));
+    return scene;
+}
+
 }  // namespace families
 
 struct Family {
@@ -300,6 +309,7 @@ inline const std::vector<Family>& all_families() {
         {"fields_of_view", families::fields_of_view},
         {"off_centre", families::off_centre},
         {"axis_edges", families::axis_edges},
+        {"most_tiles", families::most_tiles},
     };
     return all;
 }

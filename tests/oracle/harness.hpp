@@ -8,6 +8,7 @@
 #include "../../bench/exact/truth.hpp"
 
 #include <lightbin/binner.hpp>
+#include <lightbin/masks.hpp>
 
 #include <doctest/doctest.h>
 
@@ -81,6 +82,23 @@ std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, s
     for (std::size_t tile = 0; tile < in.size(); ++tile)
         for (const Id id : grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count))
             in[tile][id] = true;
+    return in;
+}
+
+/// The same of masks; with z-bins in[bin and tile][light], tiles in each bin.
+inline std::vector<std::vector<bool>> membership(const lightbin::LightMasks& masks, std::size_t lights) {
+    std::vector<std::vector<bool>> in;
+    const lightbin::BinRange every_light[] = {{0, 0xffffffff}};
+    for (const lightbin::BinRange& bin : masks.bins().empty() ? std::span(every_light) : masks.bins())
+        for (int y = 0; y < masks.tiles_y(); ++y)
+            for (int x = 0; x < masks.tiles_x(); ++x) {
+                in.emplace_back(lights);
+                const auto column = masks.column(x), row = masks.row(y);
+                for (std::uint32_t place = 0; place < masks.ids().size(); ++place)
+                    if (place >= bin.least && place <= bin.greatest &&
+                        (column[place / 32] & row[place / 32]) >> place % 32 & 1)
+                        in.back()[masks.ids()[place]] = true;
+            }
     return in;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Holds a scene's light lists, without and with the depth test, against the exact truth: the filter's proof where it
-// has one, else rationals. And every instruction set, and the caller's threads, against the scalar lists.
+// Holds a scene's light lists, without and with the depth test, and its masks, without and with z-bins, against the
+// exact truth: the filter's proof where it has one, else rationals. And every instruction set, and the caller's
+// threads, against the scalar ones.
 #pragma once
 
 #include "families.hpp"
@@ -9,6 +10,7 @@
 #include "../../bench/exact/truth.hpp"
 
 #include <lightbin/binner.hpp>
+#include <lightbin/masks.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -90,6 +92,60 @@ public:
         in_rectangle_ = std::move(in);
     }
 
+    /// A light must not meet columns and rows whose masks lack it, nor any tile at the depths of a bin that lacks it.
+    void judge_masks(bool with_bins) {
+        using lightbin::Isa, lightbin::MaskBinner;
+        Random random(scene_.lights.size());
+        const lightbin::Slices slices = slices_at_ends(Aim(scene_.camera), scene_.lights, random);
+        const auto bin = [&](MaskBinner& binner) {
+            return with_bins ? binner.bin(view_, scene_.lights, slices) : binner.bin(view_, scene_.lights);
+        };
+        MaskBinner scalar(Isa::scalar);
+        const auto masks = bin(scalar);
+        if (!masks) return complain("the lights were refused");
+        for (const Isa isa : {Isa::simd128, Isa::avx2, Isa::avx512}) {
+            MaskBinner binner(isa);
+            const auto other = bin(binner);
+            if (!other || !std::ranges::equal(other->words(), masks->words()))
+                complain("masks: " + (to_string(isa) + std::string(" differs")));
+        }
+        if (masks->light_counts().rejected != rejected_of(scene_.lights)) complain("masks: bad lights are miscounted");
+        const std::size_t count = scene_.lights.size(), out_of_view = masks->ids().size();
+        std::vector<std::size_t> place_of(count, out_of_view);
+        for (std::size_t place = 0; place < out_of_view; ++place) {
+            const std::uint32_t id = masks->ids()[place];
+            if (id >= count || place_of[id] != out_of_view) return complain("masks: no ids, or one twice");
+            if (is_bad(scene_.lights[id])) complain("masks: a bad light has a bit");
+            place_of[id] = place;
+        }
+        const int nx = view_.tiles_x(), ny = view_.tiles_y();
+        for (std::size_t i = 0; i < count; ++i) {
+            if (is_bad(scene_.lights[i])) continue;
+            const std::size_t place = place_of[i];
+            const auto each_run = [&](int end, const auto& mask_at, const auto& prove_run) {
+                const auto lacks = [&](int at) {
+                    return place == out_of_view || !(mask_at(at)[place / 32] >> place % 32 & 1);
+                };
+                for (int at = 0, begin = 0; at < end; begin = ++at) {
+                    while (at < end && lacks(at))
+                        ++at;
+                    if (begin < at) prove_run(begin, at);
+                }
+            };
+            each_run(
+                nx, [&](int x) { return masks->column(x); },
+                [&](int x0, int x1) { prove(i, {x0, x1, 0, ny}, -INFINITY, INFINITY); });
+            each_run(
+                ny, [&](int y) { return masks->row(y); },
+                [&](int y0, int y1) { prove(i, {0, nx, y0, y1}, -INFINITY, INFINITY); });
+            const auto boundaries = slices.boundaries();
+            for (std::size_t s = 0; s < masks->bins().size(); ++s)
+                if (place < masks->bins()[s].least || place > masks->bins()[s].greatest)
+                    prove(i, {0, nx, 0, ny}, s == 0 ? -INFINITY : boundaries[s - 1],
+                          s == boundaries.size() ? INFINITY : boundaries[s]);
+        }
+    }
+
 private:
     struct Lists {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;  ///< offset and count
@@ -152,8 +208,12 @@ private:
 
 inline void judge_scene(const Scene& scene, const lightbin::View& view, Verdicts& verdicts) {
     Judge judge(scene, view, verdicts);
-    judge.judge<false>();
-    judge.judge<true>();
+    if (!scene.min.empty()) {
+        judge.judge<false>();
+        judge.judge<true>();
+    }
+    judge.judge_masks(false);
+    judge.judge_masks(true);
 }
 
 }  // namespace oracle

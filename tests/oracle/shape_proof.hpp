@@ -3,7 +3,7 @@
 // of light: on every camera kind, with and without depth test, in view and world space.
 //
 // A question is whether a light meets a cell whose list does not have it. Cells beside a tile that has the light have a
-// number of questions of their own, as a wrong margin shows there first.
+// number of questions of their own, as a wrong margin shows there first. Masks must have the lights of the lists.
 //
 // LIGHTBIN_CAMERAS names the kinds of camera to ask about, world_space among them; LIGHTBIN_ROUNDS=N asks N times as
 // much, each time of other lights: the campaign does.
@@ -148,22 +148,6 @@ std::vector<std::vector<bool>> membership_of(const Grid& grid, std::size_t light
     }
 }
 
-/// Boundaries of which every second one is where a light begins or ends, as floats have it, or a hair beside; the
-/// others anywhere.
-inline lightbin::Slices slices_at_ends(const Aim& aim, const std::vector<Light>& lights, Random& random) {
-    std::vector<float> boundaries;
-    for (std::size_t i = 0; i < 5; ++i) {
-        const Light& light = lights[random.bits() % lights.size()];
-        float end = aim.depth_of(light) + (random.chance(0.5) ? light.w : -light.w);
-        if (random.chance(0.3)) end = std::nextafter(end, random.chance(0.5) ? 1e38f : -1e38f);
-        if (i % 2 == 1) end = static_cast<float>(random.sign() * random.power_of_two(-12, 12));
-        if (std::isfinite(end)) boundaries.push_back(end);
-    }
-    std::sort(boundaries.begin(), boundaries.end());
-    boundaries.erase(std::unique(boundaries.begin(), boundaries.end()), boundaries.end());
-    return *lightbin::Slices::from_boundaries(boundaries);
-}
-
 template <class Kind, lightbin::Options options>
 void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::View& view, const ViewMatrix* matrix,
                     std::size_t most, typename Kind::Tally& tally, std::uint64_t& seed) {
@@ -175,6 +159,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
     const int nx = view.tiles_x(), ny = view.tiles_y();
     lightbin::Binner<> rectangles;
     lightbin::Binner<options> binner;
+    lightbin::MaskBinner mask_binner;
     for (const auto& set : Kind::sets()) {
         Random random(++seed);
         const auto aimed =
@@ -202,6 +187,13 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
         });
         REQUIRE(grid.has_value());
         CHECK(grid->light_counts().rejected == rejected_of(subjects.lights));
+        if constexpr (!options.depth_test && options.slicing != lightbin::Slicing::clusters) {
+            const auto masks = bin_in(Kind::to_library(subjects.lights), matrix, [&](const auto& lights) {
+                return sliced ? mask_binner.bin(view, lights, slices) : mask_binner.bin(view, lights);
+            });
+            REQUIRE(masks.has_value());
+            CHECK_MESSAGE(membership(*masks, count) == membership_of<options>(*grid, count), set.name);
+        }
         if constexpr (whole_rectangles) {
             const Examiner::Cell cell(examiner);
             const std::vector<Emitted> emitted = emitted_tiles(*grid, count);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// lists [SCENES [threads]]: builds the lists of so many random scenes (60 if not given) by every option, on every instruction set
-// that this machine has and for several threads, which must not change a byte. Prints a hash for each option, and one of
-// all of them: these are the same on every platform. tests/platforms.sh holds them against each other. Then it does so
-// again in every floating-point environment that a caller may have set, of a sixth of the scenes: that must not change a
-// byte either, and what traps must not end the program. With `threads`, Binners of all options work at once, each on a
-// thread of its own, and some whose work several threads share: the thread sanitizer says whether they share more than
-// their input.
+// lists [SCENES [threads]]: builds the lists and masks of so many random scenes (60 if not given) by every option, on
+// every instruction set that this machine has and for several threads, which must not change a byte. Prints a hash for
+// each option, and one of all of them: these are the same on every platform. tests/platforms.sh holds them against each
+// other. Then it does so again in every floating-point environment that a caller may have set, of a sixth of the
+// scenes: that must not change a byte either, and what traps must not end the program. With `threads`, Binners of all
+// options work at once, each on a thread of its own, and some whose work several threads share: the thread sanitizer
+// says whether they share more than their input.
 //
 // Every input is a whole number times a power of two, or a rounded product: fused sums, functions, the distributions of
 // <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and
@@ -18,6 +18,7 @@
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/spot.hpp>
 
@@ -288,9 +289,13 @@ private:
         const auto grid = binner_.bin(scene.view, lights, inputs, parallel);
         if (!grid) return 0;
         add_grid(hash, *grid);
-        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none && !options.depth_test)
+        constexpr bool plain = options.ids == IdWidth::u32 && options.slicing == Slicing::none;
+        if constexpr (plain && !options.depth_test) {
             add_encodings(hash, *grid);
-        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none && options.depth_test)
+            add_masks(hash, masks_.bin(scene.view, lights));
+            add_masks(hash, masks_.bin(scene.view, lights, slices()));
+        }
+        if constexpr (plain && options.depth_test)
             add_coverage(hash, *grid, *coverage(scene.view, lights, parallel, options.isa));
         return hash.value();
     }
@@ -316,6 +321,15 @@ private:
             hash.add(std::uint64_t{cut});
     }
 
+    static void add_masks(Hash& hash, const Result<LightMasks>& masks) {
+        hash.add(std::uint64_t{masks.has_value()});
+        if (!masks) return;
+        hash.add(std::uint64_t{masks->light_counts().rejected});
+        for (const std::uint32_t word : masks->words())
+            hash.add(std::uint64_t{word});
+    }
+
+    MaskBinner masks_{options.isa};
     Binner<options> binner_;
     Budget<typename Binner<options>::Id> budget_;
 };
@@ -420,7 +434,7 @@ void check_texts() {
 }
 
 void check_lists(const std::vector<Scene>& scenes) {
-    check<Options{}>("rectangle", scenes);
+    check<Options{}>("rectangle, masks", scenes);
     check<Options{.ids = IdWidth::u16}>("rectangle, 16 bits", scenes);
     check<Options{.depth_test = true}>("depth test, coverage", scenes);
     check<Options{.ids = IdWidth::u16, .depth_test = true}>("depth test, 16 bits", scenes);
