@@ -47,8 +47,23 @@ template <class T> std::vector<T> read_as(GpuDevice& device, const std::string& 
 
 }  // namespace
 
-GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile_size, const GpuFrame& first,
-                   std::uint32_t entries, const lightbin::Slices* slices, const lightbin::ZBounds& bounds)
+ReadLists lists_of(const lightbin::LightMasks& masks) {
+    ReadLists lists = {};
+    for (int y = 0; y < masks.tiles_y(); ++y)
+        for (int x = 0; x < masks.tiles_x(); ++x) {
+            const auto begin = std::uint32_t(lists.ids.size());
+            for (std::size_t i = 0; i < masks.ids().size(); ++i)
+                if (masks.column(x)[i / 32] & masks.row(y)[i / 32] & (1u << i % 32))
+                    lists.ids.push_back(masks.ids()[i]);
+            lists.ranges.push_back({begin, std::uint32_t(lists.ids.size()) - begin});
+        }
+    lists.totals.entries = std::uint32_t(lists.ids.size());
+    return lists;
+}
+
+GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, bool masks, int tile_size,
+                   const GpuFrame& first, std::uint32_t entries, const lightbin::Slices* slices,
+                   const lightbin::ZBounds& bounds)
     : device_(device),
       view_(first.lens.view(tile_size)), room_{static_cast<std::uint32_t>(first.lights.size()), entries} {
     if (slices) slices_ = *slices;
@@ -57,7 +72,8 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     options_.slicing = options.slicing;
     plan_ = plan_of(first, view_, options_, room_, slices_);
     std::vector<ComputePass> passes;
-    for (const lightbin::CullPass pass : lightbin::cull_passes) {
+    passes_ = masks ? std::span<const lightbin::CullPass>(lightbin::cull_mask_passes) : lightbin::cull_passes;
+    for (const lightbin::CullPass pass : passes_) {
         const lightbin::CullGroups groups = plan_.groups_of(pass);
         passes.push_back(
             {to_string(pass), value_of(lightbin::cull_shader(pass, options_)), groups.x, groups.y});
@@ -73,7 +89,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile
     make("grid", sizeof(lightbin::ShaderCull));
     make("scratch", plan_.bytes.scratch);
     make("tiles", plan_.bytes.tiles);
-    make("lists", plan_.bytes.lists);
+    make("lists", masks ? plan_.bytes.masks : plan_.bytes.lists);
     fill("lights", bytes_of(first.lights));
     fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
     if (options.depth_test) fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
@@ -87,10 +103,13 @@ double GpuBuild::upload(const GpuFrame& frame) {
 }
 
 ReadLists GpuBuild::read() {
-    ReadLists lists;
-    lists.totals = read_as<lightbin::CullTotals>(device_, "scratch", 1)[0];
-    lists.ranges =
-        read_as<lightbin::ListRange>(device_, "tiles", static_cast<std::size_t>(plan_.bytes.tiles / 8));
-    lists.ids = read_as<std::uint32_t>(device_, "lists", std::min(lists.totals.entries, room_.entries));
-    return lists;
+    const lightbin::CullTotals totals = read_as<lightbin::CullTotals>(device_, "scratch", 1)[0];
+    if (passes_.back() == lightbin::CullPass::masks) {
+        const auto words = read_as<std::uint32_t>(device_, "lists", std::size_t(plan_.bytes.masks / 4));
+        ReadLists lists = lists_of({view_.tiles_x(), view_.tiles_y(), words, {.lights = room_.lights}, {}});
+        lists.totals.visible = totals.visible;
+        return lists;
+    }
+    return {totals, read_as<lightbin::ListRange>(device_, "tiles", std::size_t(plan_.bytes.tiles / 8)),
+            read_as<std::uint32_t>(device_, "lists", std::min(totals.entries, room_.entries))};
 }

@@ -6,6 +6,7 @@
 #include "frames.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader_cull.hpp>
 
 #include <cstddef>
@@ -22,12 +23,17 @@ struct ReadLists {
     std::vector<std::uint32_t> ids;
 };
 
+/// The lists that masks stand for.
+ReadLists lists_of(const lightbin::LightMasks& masks);
+
 /// Builds of frames that have the lens and the number of lights of the first one.
 class GpuBuild {
 public:
+    /// masks   in place of lists
     /// bounds  as the options' depth test reads them, or empty
-    GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile_size, const GpuFrame& first,
-             std::uint32_t entries, const lightbin::Slices* slices, const lightbin::ZBounds& bounds);
+    GpuBuild(GpuDevice& device, const lightbin::Options& options, bool masks, int tile_size,
+             const GpuFrame& first, std::uint32_t entries, const lightbin::Slices* slices,
+             const lightbin::ZBounds& bounds);
 
     /// Writes what changes from frame to frame: constants, and lights in view space. Returns milliseconds.
     double upload(const GpuFrame& frame);
@@ -39,6 +45,7 @@ public:
 
 private:
     GpuDevice& device_;
+    std::span<const lightbin::CullPass> passes_;
     lightbin::View view_;
     lightbin::CullShaderOptions options_;
     lightbin::CullRoom room_;

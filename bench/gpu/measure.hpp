@@ -11,12 +11,13 @@
 #include "../measure.hpp"
 
 #include <lightbin/binner.hpp>
-#include <lightbin/coverage.hpp>
+#include <lightbin/masks.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,6 @@ struct GpuRow {
     double gpu_ms = 0, gpu_upload_ms = 0;
     std::vector<std::pair<std::string, double>> passes;  ///< milliseconds of each pass of the GPU
     std::size_t scratch = 0;                             ///< bytes
-    double tests = 0;  ///< of a light against a cell on the GPU, in count and fill together
     Difference difference;
 };
 
@@ -36,49 +36,15 @@ struct TurnsOf {
     int timed, before;
 };
 
-/// In count and in fill, each light is tested against all cells of the mask blocks that it meets.
-template <class Coverages>
-double tests_of(const Coverages& lights, const lightbin::CullPlan& plan, const lightbin::Slices* slices) {
-    const lightbin::ShaderCull& c = plan.constants;
-    const double cells = double(1u << (2 * c.block_shift + c.slice_shift));
-    double blocks = 0;
-    for (const lightbin::LightCoverage& light : lights) {
-        const auto across = [](unsigned first, unsigned last, unsigned shift) {
-            return double((last >> shift) - (first >> shift) + 1);
-        };
-        double met = across(light.x0, light.x1, c.block_shift) * across(light.y0, light.y1, c.block_shift);
-        if (slices)
-            met *= across(unsigned(slices->slice_at(light.nearest)),
-                          unsigned(slices->slice_at(light.farthest)), c.slice_shift);
-        blocks += met;
-    }
-    return 2 * cells * blocks;
-}
-
-template <lightbin::Options options> class CpuBuild {
-public:
-    explicit CpuBuild(const lightbin::Slices& slices, const lightbin::ZBounds& bounds)
-        : inputs_(lightbin::inputs_for<options>(bounds, slices)) {}
-
-    auto operator()(const GpuFrame& frame, const lightbin::View& view) {
-        return frame.to_view
-                   ? *binner_.bin(view, lightbin::world_space(frame.lights, *frame.to_view), inputs_)
-                   : *binner_.bin(view, frame.lights, inputs_);
-    }
-
-private:
-    lightbin::Inputs<options.depth_test, options.slicing> inputs_;
-    lightbin::Binner<options> binner_;
-};
-
-/// What each light of a frame covers.
-inline std::vector<lightbin::LightCoverage> coverage_of(const GpuFrame& frame, const lightbin::View& view) {
-    return frame.to_view ? *lightbin::coverage(view, lightbin::world_space(frame.lights, *frame.to_view))
-                         : *lightbin::coverage(view, frame.lights);
+/// The lists or masks that a binner makes of a frame.
+template <class Binner, class... Inputs>
+auto bin_frame(Binner& binner, const GpuFrame& frame, const lightbin::View& view, const Inputs&... inputs) {
+    return frame.to_view ? *binner.bin(view, lightbin::world_space(frame.lights, *frame.to_view), inputs...)
+                         : *binner.bin(view, frame.lights, inputs...);
 }
 
 /// Throws std::runtime_error with one line where the device can't do it.
-template <lightbin::Options options>
+template <lightbin::Options options, bool masks>
 GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, const TurnsOf& turns,
                const lightbin::Slices& slices, const lightbin::ZBounds& bounds) {
     constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
@@ -90,35 +56,47 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     row.lights = first.lights.size();
 
     // What lists the CPU makes of each frame, and so how long the GPU's may be.
-    CpuBuild<options> cpu(slices, bounds);
+    std::conditional_t<masks, lightbin::MaskBinner, lightbin::Binner<options>> binner;
+    const auto cpu = [&](const GpuFrame& frame) {
+        if constexpr (masks)
+            return bin_frame(binner, frame, view);
+        else
+            return bin_frame(binner, frame, view, lightbin::inputs_for<options>(bounds, slices));
+    };
     std::size_t longest = 0;
     for (const GpuFrame& frame : source.frames)
-        longest = std::max<std::size_t>(longest, cpu(frame, view).ids().size());
+        longest = std::max<std::size_t>(longest, cpu(frame).ids().size());
     const std::size_t room = longest + longest / 8 + 1024;
-    GpuBuild gpu(device, options, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr,
+    GpuBuild gpu(device, options, masks, tile_size, first, std::uint32_t(room), clusters ? &slices : nullptr,
                  bounds);
     row.scratch = std::size_t(gpu.plan().bytes.scratch);
     device.make_buffer("sent ranges", gpu.plan().bytes.tiles);
-    device.make_buffer("sent ids", 4 * room);
-    const auto send = [&](const auto& grid) {
+    // Ids or masks; a MaskBinner may add a word to each mask.
+    device.make_buffer("sent ids", std::max(4 * room, std::size_t(gpu.plan().bytes.masks) + 4096));
+    const auto send = [&](const auto& made) {
         const auto write = [&](const char* name, const auto& values) {
             const auto bytes = std::as_bytes(std::span(values));
             return bytes.empty() ? 0 : device.write(name, bytes);
         };
-        return write("sent ranges", grid.ranges()) + write("sent ids", grid.ids());
+        if constexpr (masks)
+            return write("sent ids", made.words());
+        else
+            return write("sent ranges", made.ranges()) + write("sent ids", made.ids());
     };
 
     // The lists, of each frame once.
     for (const GpuFrame& frame : source.frames) {
         gpu.upload(frame);
         gpu.run(false);
-        const auto grid = cpu(frame, view);
-        row.difference += compare(gpu.read(), grid.ranges(), grid.ids());
-    }
-    {
-        const std::vector<lightbin::LightCoverage> covered = coverage_of(first, view);
-        row.in_view = covered.size();
-        row.tests = tests_of(covered, gpu.plan(), clusters ? &slices : nullptr);
+        const auto made = cpu(frame);
+        const ReadLists lists = gpu.read();
+        row.in_view = lists.totals.visible;
+        if constexpr (masks) {
+            const ReadLists expected = lists_of(made);
+            row.difference += compare(lists, expected.ranges, expected.ids);
+        } else {
+            row.difference += compare(lists, made.ranges(), made.ids());
+        }
     }
 
     std::vector<double> builds, sends, uploads, runs;
@@ -126,9 +104,9 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     for (int turn = -turns.before; turn < turns.timed; ++turn) {
         const GpuFrame& frame = source.frames[std::size_t(turn + turns.before) % source.frames.size()];
         const double begin = time_now();
-        const auto grid = cpu(frame, view);
+        const auto made = cpu(frame);
         const double build = 1e3 * (time_now() - begin);
-        const double sent = send(grid), upload = gpu.upload(frame), run = gpu.run(false).front();
+        const double sent = send(made), upload = gpu.upload(frame), run = gpu.run(false).front();
         const std::vector<double> each = gpu.run(true);
         if (turn < 0) continue;
         builds.push_back(build), sends.push_back(sent), uploads.push_back(upload), runs.push_back(run);
@@ -139,6 +117,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     row.cpu_ms = median(builds), row.cpu_upload_ms = median(sends);
     row.gpu_ms = median(runs), row.gpu_upload_ms = median(uploads);
     for (std::size_t i = 0; i < passes.size(); ++i)
-        row.passes.emplace_back(to_string(lightbin::cull_passes[i]), median(passes[i]));
+        row.passes.emplace_back(to_string(masks ? lightbin::cull_mask_passes[i] : lightbin::cull_passes[i]),
+                                median(passes[i]));
     return row;
 }

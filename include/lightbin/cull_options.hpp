@@ -18,23 +18,26 @@ enum class CullPass : std::uint8_t {
     sums,     ///< adds the counts up, over 128 cells at a time
     offsets,  ///< adds the sums up, and finds the total
     fill,     ///< writes the lists
+    masks,    ///< in place of count to fill: writes masks of the columns and rows of tiles
 };
+/// The passes that make lists.
 inline constexpr CullPass cull_passes[] = {CullPass::project, CullPass::count, CullPass::sums, CullPass::offsets,
                                            CullPass::fill};
+/// The passes that make masks.
+inline constexpr CullPass cull_mask_passes[] = {CullPass::project, CullPass::masks};
 
 constexpr const char* to_string(CullPass value) {
-    return detail::name_at(value, {"project", "count", "sums", "offsets", "fill"});
+    return detail::name_at(value, {"project", "count", "sums", "offsets", "fill", "masks"});
 }
 
-/// What the lights in the buffer are. Boxes are refused.
+/// What the lights in the buffer are.
 enum class CullKind : std::uint8_t {
     sphere,
     spot,  ///< those with a half angle beyond 138 degrees, such as Spot::whole() makes, count as whole spheres
-    box,
 };
 
 constexpr const char* to_string(CullKind value) {
-    return detail::name_at(value, {"sphere", "spot", "box"});
+    return detail::name_at(value, {"sphere", "spot"});
 }
 
 /// Where the numbers of a light lie in the caller's buffer, in words of 32 bits. The defaults are those of an array of
@@ -112,11 +115,12 @@ struct CullBytes {
     std::uint64_t scratch = 0;  ///< written and read by the passes; its first words are CullTotals afterwards
     std::uint64_t tiles = 0;    ///< a ListRange for each cell
     std::uint64_t lists = 0;    ///< the ids
+    std::uint64_t masks = 0;    ///< what the pass `masks` writes to the buffer `lists`
 };
 
 /// What the passes leave in the first words of `scratch`.
 struct CullTotals {
-    std::uint32_t entries;   ///< of the complete lists; 2^32 - 1 stands for that number and all greater ones
+    std::uint32_t entries;   ///< of the complete lists, else undefined; 2^32 - 1 stands for all greater numbers, too
     std::uint32_t rejected;  ///< lights left out as bad input: see Sphere and Spot
     std::uint32_t visible;   ///< lights in view
     std::uint32_t lights;    ///< how many were given: with count_in_buffer, it may exceed CullRoom::lights
@@ -127,7 +131,7 @@ static_assert(sizeof(CullTotals) == 16);
 struct CullPlan {
     ShaderCull constants = {};
     CullBytes bytes = {};
-    CullGroups groups[std::size(cull_passes)] = {};  ///< by CullPass
+    CullGroups groups[std::size(cull_passes) + 1] = {};  ///< by CullPass
 
     CullGroups groups_of(CullPass pass) const { return groups[static_cast<std::size_t>(pass)]; }
 };

@@ -146,10 +146,9 @@ typedef enum lightbin_error {
     LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 147,
     LIGHTBIN_BINDINGS_OVERLAP = 148,
     LIGHTBIN_NOT_A_PREFIX = 149,
-    LIGHTBIN_NO_CULL_OF_BOXES = 150,
-    LIGHTBIN_TOO_MANY_SLICES = 151,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 152,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 153,
+    LIGHTBIN_TOO_MANY_SLICES = 150,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 151,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 152,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -890,14 +889,14 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_COUNT = 1,   /* counts the lights of each cell */
     LIGHTBIN_CULL_SUMS = 2,    /* adds the counts up, over 128 cells at a time */
     LIGHTBIN_CULL_OFFSETS = 3, /* adds the sums up, and finds the total */
-    LIGHTBIN_CULL_FILL = 4     /* writes the lists */
+    LIGHTBIN_CULL_FILL = 4,    /* writes the lists */
+    LIGHTBIN_CULL_MASKS = 5    /* in place of count to fill: writes masks of the columns and rows of tiles */
 } lightbin_cull_pass;
 
-/* What the lights in the buffer are. Boxes are refused. */
+/* What the lights in the buffer are. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
-    LIGHTBIN_CULL_SPOT = 1, /* those with a half angle beyond 138 degrees count as whole spheres */
-    LIGHTBIN_CULL_BOX = 2
+    LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */
 } lightbin_cull_kind;
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
@@ -931,15 +930,18 @@ typedef struct lightbin_cull_options {
  * binding is the prefix, the buffer's name in lightbin_cull_options and, in GLSL, `_block`; that of the constants ends
  * in `grid_block`. On success *shader is to be freed with lightbin_shader_destroy().
  *
- * After all passes, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids: the shader text of
+ * After project to fill, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids: the shader text of
  * lightbin_shader_snippet() reads them. No light that reaches a cell is missing in its list, and ids ascend in each.
  * Lists also have lights that do not reach the cell, a few others than the binner's: see docs/gpu.md. The same input
  * gives the same bytes on every run. If the lists have more entries than there is room for, the list of the first tile
  * that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
  *
+ * After project and masks, the buffer `lists` holds what the shader text of lightbin_shader_snippet() reads with the
+ * option masks: docs/gpu.md says more.
+ *
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
- * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER,
- * LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
+ * LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER, LIGHTBIN_NOT_A_PREFIX,
+ * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                                   lightbin_shader** shader);
 
@@ -957,7 +959,8 @@ typedef struct lightbin_cull_plan {
     uint64_t scratch_bytes; /* the first words of `scratch` are lightbin_cull_totals afterwards */
     uint64_t tile_bytes;    /* of `tiles`: a lightbin_range for each cell */
     uint64_t list_bytes;    /* of `lists`: the ids */
-    lightbin_cull_groups groups[5]; /* by lightbin_cull_pass */
+    uint64_t mask_bytes;    /* of `lists`, where it is for the pass masks */
+    lightbin_cull_groups groups[6]; /* by lightbin_cull_pass */
     /* The content of the uniform block `grid`, all 256 bytes. Its layout is that of the texts of the same version of
      * lightbin: make both in the same program. */
     uint32_t constants[64];
@@ -965,7 +968,7 @@ typedef struct lightbin_cull_plan {
 
 /* What the passes leave in the first words of `scratch`. */
 typedef struct lightbin_cull_totals {
-    uint32_t entries;  /* of the complete lists; 2^32 - 1 stands for that number and all greater ones */
+    uint32_t entries;  /* of the complete lists, else undefined; 2^32 - 1 stands for all greater numbers, too */
     uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
     uint32_t visible;  /* lights in view */
     uint32_t lights;   /* how many were given: with count_in_buffer, it may exceed those that there is room for */
@@ -987,7 +990,8 @@ typedef struct lightbin_cull_totals {
  * Errors: those of lightbin_cull_shader(); LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
  * LIGHTBIN_VIEW_MATRIX_DISTORTS, it is not close enough to a rotation with a uniform scale; LIGHTBIN_TOO_MANY_SLICES,
  * more than 65,535; LIGHTBIN_TOO_MANY_LIGHTS for the ids; LIGHTBIN_SCRATCH_TOO_LARGE, more than 2^32 - 1 words;
- * LIGHTBIN_NOT_READ, slices or a matrix that the options do not read. */
+ * LIGHTBIN_TOO_MANY_ENTRIES, masks of more words than that; LIGHTBIN_NOT_READ, slices or a matrix that the options do
+ * not read. */
 LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
                                                 const lightbin_cull_options* options, uint32_t lights,
                                                 uint32_t entries, const lightbin_slices* slices,

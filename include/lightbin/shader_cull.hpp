@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compute shaders that make the whole light grid on the GPU, from lights in a buffer on the GPU: cull_shader() returns
-// the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows their use.
+// Compute shaders that make the whole light grid on the GPU, or masks, from lights in a buffer on the GPU: cull_shader()
+// returns the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows their use.
 #pragma once
 
 #include <lightbin/cull_options.hpp>
@@ -15,7 +15,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// Error that names the limit that the options exceed. The name of a binding is the prefix, the buffer's name in
 /// CullShaderOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
 ///
-/// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(): the shader text of
+/// After cull_passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(): the shader text of
 /// shader_snippet() reads them. No light that reaches a cell is missing in its list, on the conditions of
 /// docs/limits.md, and ids ascend. Lists also have lights that do not reach the cell, a few others than the Binner's:
 /// see docs/gpu.md. The same input gives the same bytes on every run.
@@ -23,6 +23,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
 /// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is
 /// what was needed.
+///
+/// After cull_mask_passes, the buffer `lists` holds LightMasks::words() without bins, for the shader text with
+/// ShaderOptions::masks. There ids()[i] is i for all lights that there is room for, and lights out of view have no bits.
+/// Columns and rows have the lights of a MaskBinner, and the few more that lists have. The depth test and clusters have
+/// no part in masks.
 inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& options = {});
 
 /// Returns the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport,
@@ -37,7 +42,7 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
 /// writes them, and with a depth test behind them shader_edges(view).
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
-/// slices; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
+/// slices; too many lights for the ids; `scratch` or the masks would have more than 2^32 - 1 words.
 inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
                                   const Slices* slices = nullptr, const Matrix* to_view = nullptr);
 

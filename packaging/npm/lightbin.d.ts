@@ -292,7 +292,7 @@ export interface ReduceShaderOptions {
 }
 
 /** The compute shaders that make the lists on the GPU of lights in a buffer there. */
-export type CullPass = 'project' | 'count' | 'sums' | 'offsets' | 'fill';
+export type CullPass = 'project' | 'count' | 'sums' | 'offsets' | 'fill' | 'masks';
 
 /** All passes need the same options except for `pass`. docs/gpu.md explains them and the buffers. */
 export interface CullShaderOptions {
@@ -339,9 +339,11 @@ export interface CullPlan {
     constants: Uint32Array;
     /** The sizes of the buffers. The first four words of scratch are, after the passes: the entries of the complete
      * lists, the lights that are bad input, those in view, and those given. */
-    bytes: {scratch: number, tiles: number, lists: number};
-    /** The passes in the order of their dispatches, and the work groups of each. */
+    bytes: {scratch: number, tiles: number, lists: number, masks: number};
+    /** The passes that make lists in the order of their dispatches, and the work groups of each. */
     passes: {pass: CullPass, x: number, y: number}[];
+    /** The same for masks in the buffer `lists`, which then has `bytes.masks`. */
+    maskPasses: {pass: CullPass, x: number, y: number}[];
 }
 
 /** One resource that the program has to bind. */

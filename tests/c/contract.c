@@ -641,13 +641,11 @@ static void test_cull(void) {
 
     CHECK(refuses(lightbin_cull_shader(NULL, &shader), LIGHTBIN_NULL_ARGUMENT, "options"));
     CHECK(refuses(lightbin_cull_shader(&options, NULL), LIGHTBIN_NULL_ARGUMENT, "shader"));
-    options.pass = 5;
+    options.pass = 6;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.pass"));
     options.pass = LIGHTBIN_CULL_FILL;
-    options.kind = 3;
+    options.kind = 2;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.kind"));
-    options.kind = LIGHTBIN_CULL_BOX;
-    CHECK(lightbin_cull_shader(&options, &shader).error == LIGHTBIN_NO_CULL_OF_BOXES);
     options.kind = LIGHTBIN_CULL_SPOT;
     options.ids = 3;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.ids"));
@@ -704,6 +702,7 @@ static void test_cull(void) {
     distorts[0] = 1;
     CHECK(lightbin_plan_cull(view, &options, 9, 1000, NULL, &to_view, &plan).error == LIGHTBIN_OK);
     CHECK(plan.size == sizeof plan && plan.tile_bytes == 8 * tile_count && plan.list_bytes == 4000);
+    CHECK(plan.mask_bytes == 4 * (1 + 20 + 1 + 13 + 32));
     CHECK(plan.constants[0] == 20 && plan.constants[1] == 13);
     CHECK(plan.groups[LIGHTBIN_CULL_PROJECT].x == 1 && plan.groups[LIGHTBIN_CULL_PROJECT].y == 1);
     lightbin_slices_destroy(slices);

@@ -141,8 +141,8 @@ private:
 
 lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     lightbin_cull_options options = {};
-    options.language = take_number(bytes, 8), options.pass = take_number(bytes, 5);
-    options.kind = take_number(bytes, 3), options.ids = take_number(bytes, 3);
+    options.language = take_number(bytes, 8), options.pass = take_number(bytes, 6);
+    options.kind = take_number(bytes, 2), options.ids = take_number(bytes, 3);
     options.depth_test = bytes.flag(), options.slicing = take_number(bytes, 3);
     options.prefix = prefix;
     if (bytes.flag())

@@ -391,7 +391,7 @@ std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) 
     want(project && options.slicing != Slicing::none, "slices", options.slices);
     want(project && options.count_in_buffer, "light_count", options.light_count);
     want(fill, "tiles", options.tiles);
-    want(fill, "lists", options.lists);
+    want(fill || pass == CullPass::masks, "lists", options.lists);
     return wanted;
 }
 
@@ -412,6 +412,9 @@ void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions&
     };
     sized(plan.bytes.tiles, 8 * cells);
     sized(plan.bytes.lists, std::uint64_t{room.entries} * static_cast<unsigned>(options.ids));
+    const std::uint64_t mask_words = (lights + 31) / 32, of_each = columns + rows + 33;
+    sized(plan.bytes.masks, 4 * (1 + of_each * mask_words));
+    holds(plan.bytes.masks < std::uint64_t{1} << 34, "more words of masks than numbers");
 
     // Arrays in `scratch` lie behind each other, with room for what docs/gpu.md says.
     const std::uint64_t words = plan.bytes.scratch / 4;
@@ -430,12 +433,14 @@ void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions&
     holds(made.segments >= 1 && made.segments <= 32 &&
               std::uint64_t{made.segments} * made.steps * 1024 >= lights,
           "segments that don't hold the lights");
-    for (const CullPass pass : cull_passes) {
+    for (std::size_t i = 0; i < std::size(plan.groups); ++i) {
+        const auto pass = static_cast<CullPass>(i);
         const CullGroups groups = plan.groups_of(pass);
         holds(groups.x >= 1 && groups.y >= 1 && groups.x <= 65535 && groups.y <= 65535,
               "more work groups than devices have");
         const std::uint64_t needed = pass == CullPass::project ? (lights + 63) / 64
                                      : pass == CullPass::sums  ? (cells + 127) / 128
+                                     : pass == CullPass::masks ? mask_words * ((of_each + 127) / 128)
                                                                : 1;
         holds(std::uint64_t{groups.x} * groups.y >= needed, "too few work groups");
     }
@@ -478,7 +483,7 @@ void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
         for (const ErrorCode code : {ErrorCode::view_matrix_not_affine, ErrorCode::view_matrix_transposed,
                                      ErrorCode::view_matrix_distorts})
             reasons.insert(code);
-    if (error.code == ErrorCode::scratch_too_large)
+    if (error.code == ErrorCode::scratch_too_large || error.code == ErrorCode::too_many_entries)
         require(error.needed > error.available, "a plan that would fit", error.message());
     else
         require(reasons.contains(error.code), "a plan is refused without reason", error.message());
@@ -488,7 +493,7 @@ void fuzz_cull(Bytes& bytes) {
     CullShaderOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
-    const CullPass pass = take_enum(bytes, CullPass::fill);
+    const CullPass pass = take_enum(bytes, CullPass::masks);
     options.depth_test = bytes.flag();
     const unsigned flags = bytes.byte();
     options.max_only = (flags & 1) != 0;
@@ -500,14 +505,13 @@ void fuzz_cull(Bytes& bytes) {
               {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.tiles,
                &options.light_count, &options.lists, &options.grid},
               question);
-    options.kind = take_enum(bytes, CullKind::box);
+    options.kind = take_enum(bytes, CullKind::spot);
     options.ids = static_cast<IdWidth>(4u >> bytes.byte() % 3);
     options.lights_at = {take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes),
                          take_size(bytes)};
     options.count_at = take_size(bytes);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
-    if (options.kind == CullKind::box) question.reasons.insert(ErrorCode::no_cull_of_boxes);
     if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
     if (options.slicing == Slicing::z_bins) question.reasons.insert(ErrorCode::no_such_slicing_shader);
     question.constants_in_block = true;

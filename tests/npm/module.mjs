@@ -91,13 +91,14 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
         const worldSpace = slicing !== 'clusters';
         const options = {language: 'wgsl', kind: 'spot', stride: 12, radius: 3, axis: 4, cosine: 7, worldSpace,
                          depthTest: true, slicing};
-        const {bytes, constants, passes} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
+        const {bytes, constants, passes, maskPasses} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
             ...slicing !== 'no-slicing' && {slices: wide}, ...worldSpace && {viewMatrix: camera}});
-        const {scratch, tiles, lists} = bytes;
-        same(BigUint64Array.from([scratch, tiles, lists], BigInt), `sizes, ${slicing}`);
+        const {scratch, tiles, lists, masks} = bytes;
+        same(BigUint64Array.from([scratch, tiles, lists, masks], BigInt), `sizes, ${slicing}`);
         same(constants, `constants, ${slicing}`);
         assert.equal(passes.length, 5);
-        for (const {pass, x, y} of passes) {
+        assert.deepEqual(maskPasses[0], passes[0]);
+        for (const {pass, x, y} of [...passes, ...maskPasses.slice(1)]) {
             same(Uint32Array.of(x, y), `groups of ${pass}, ${slicing}`);
             assert.equal((await lightbin.cullShader({...options, pass})).text, text());
         }

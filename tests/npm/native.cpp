@@ -186,9 +186,9 @@ int main(int count, char** names) {
         auto plan = sized<lightbin_cull_plan>();
         succeed(lightbin_plan_cull(view, &options, SPOTS, 9000, sliced ? wide_slices : nullptr,
                                    sliced ? nullptr : &to_view, &plan));
-        write_block(&plan.scratch_bytes, 3 * sizeof plan.scratch_bytes);
+        write_block(&plan.scratch_bytes, 4 * sizeof plan.scratch_bytes);
         write_block(plan.constants, sizeof plan.constants);
-        for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
+        for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_MASKS; ++pass) {
             options.pass = pass;
             succeed(lightbin_cull_shader(&options, &shader));
             write_block(&plan.groups[pass], sizeof plan.groups[0]);

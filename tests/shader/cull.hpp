@@ -4,10 +4,13 @@
 
 #include "builders.hpp"
 
+#include <lightbin/masks.hpp>
 #include <lightbin/shader_cull.hpp>
 
+#include <bit>
 #include <cstdio>
 #include <cstring>
+#include <numeric>
 #include <optional>
 
 /// A pass and its options.
@@ -25,7 +28,8 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     for (const Slicing slicing : {Slicing::none, Slicing::clusters})
         for (const bool depth_test : {false, true})
             for (unsigned switches = 0; switches < 64; ++switches)
-                for (const CullPass pass : cull_passes) {
+                for (int i = 0; i <= static_cast<int>(CullPass::masks); ++i) {
+                    const auto pass = static_cast<CullPass>(i);
                     CullShaderOptions options;
                     options.language = language;
                     options.slicing = slicing;
@@ -65,6 +69,8 @@ struct CulledGrid {
     lightbin::CullTotals totals = {};
     std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> lists;
+    lightbin::CullTotals mask_totals = {};
+    std::vector<std::uint32_t> masks;
     bool narrow = false;
 
     std::uint32_t id(std::size_t at) const {
@@ -80,12 +86,18 @@ struct CulledGrid {
         add(std::span(&totals, 1));
         add(std::span(tiles));
         add(std::span(lists));
+        add(std::span(masks));
         return hash;
     }
 };
 
+/// With the number of lights in a buffer, there is room for more than are given.
+inline lightbin::CullRoom room_of(const CullCase& scene) {
+    return {scene.count + (scene.options.count_in_buffer ? 40 : 0), scene.room};
+}
+
 inline lightbin::CullPlan plan_of(const CullCase& scene) {
-    lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, {scene.count, scene.room},
+    lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, room_of(scene),
                                                    scene.slices ? &*scene.slices : nullptr,
                                                    scene.to_view ? &*scene.to_view : nullptr);
     if (scene.binners_margin) {
@@ -107,6 +119,7 @@ inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
     blank("scratch", plan.bytes.scratch);
     blank("tiles", plan.bytes.tiles);
     blank("lists", plan.bytes.lists);
+    blank("masks", plan.bytes.masks);
     return written;
 }
 
@@ -140,7 +153,7 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// Runs all passes on a device.
+/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote.
 template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
@@ -152,6 +165,11 @@ template <class Device> CulledGrid run_cull(Device& device, const CullCase& scen
     grid.tiles.resize((written["tiles"].size() - 16) / 2);
     std::memcpy(grid.tiles.data(), written["tiles"].data(), grid.tiles.size() * 8);
     grid.lists = written["lists"];
+    std::swap(written["lists"], written["masks"]);
+    std::fill_n(written["scratch"].begin(), 3, 0xeeeeeeee);
+    run_passes(device, scene, plan, std::span(cull_mask_passes).last(1), written);
+    std::memcpy(&grid.mask_totals, written["scratch"].data(), sizeof grid.mask_totals);
+    grid.masks = written["lists"];
     return grid;
 }
 
@@ -203,6 +221,49 @@ inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expecte
         tally.excess += own.size() - both.size();
     }
     if (grid.totals.entries != end) ++tally.wrong;
+    return tally;
+}
+
+/// Counts what masks lack of a MaskBinner's, and what they have beyond them: bits of columns and rows. Wrong are bits and
+/// ids of lights that are not there, another layout than LightMasks has, and other totals than the lists'.
+template <class Lights>
+CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lights& lights) {
+    lightbin::MaskBinner binner;
+    const lightbin::LightMasks expected = *binner.bin(scene.view, lights);
+    const int columns = scene.view.tiles_x(), rows = scene.view.tiles_y();
+    const std::size_t room = room_of(scene).lights, each = (room + 31) / 32,
+                      size = 1 + static_cast<std::size_t>(columns + 1 + rows + 32) * each;
+    CullTally tally;
+    tally.cases = tally.wrong = 1;
+    const std::span<const std::uint32_t> words = grid.masks;
+    if (words.size() != (std::max)(size, std::size_t{4}) + 16 || words[0] != each) return tally;
+    const lightbin::LightMasks made(columns, rows, words.first(size), {static_cast<std::uint32_t>(32 * each)}, {});
+    const auto only = [](std::span<const std::uint32_t> part, std::uint32_t value) {
+        return std::all_of(part.begin(), part.end(), [&](std::uint32_t word) { return word == value; });
+    };
+    std::vector<std::uint32_t> numbers(32 * each);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    const auto empty = words.subspan(1 + static_cast<std::size_t>(columns) * each, each);
+    tally.wrong = !only(empty, 0) || !only(words.subspan(size), 0xeeeeeeee) ||
+                  !std::equal(numbers.begin(), numbers.end(), made.ids().begin(), made.ids().end()) ||
+                  grid.totals.rejected != grid.mask_totals.rejected ||
+                  grid.totals.visible != grid.mask_totals.visible || grid.totals.lights != grid.mask_totals.lights;
+    const auto compare = [&](std::span<const std::uint32_t> own, std::span<const std::uint32_t> theirs) {
+        std::vector<std::uint32_t> wanted(each);
+        for (std::size_t i = 0; i < expected.ids().size(); ++i)
+            wanted[expected.ids()[i] / 32] |= (theirs[i / 32] >> (i % 32) & 1) << (expected.ids()[i] % 32);
+        for (std::size_t i = 0; i < each; ++i) {
+            tally.entries += static_cast<std::size_t>(std::popcount(wanted[i]));
+            tally.missed += static_cast<std::size_t>(std::popcount(wanted[i] & ~own[i]));
+            tally.excess += static_cast<std::size_t>(std::popcount(own[i] & ~wanted[i]));
+        }
+        for (std::size_t i = scene.count; i < 32 * each; ++i)
+            tally.wrong += own[i / 32] >> (i % 32) & 1;
+    };
+    for (int x = 0; x < columns; ++x)
+        compare(made.column(x), expected.column(x));
+    for (int y = 0; y < rows; ++y)
+        compare(made.row(y), expected.row(y));
     return tally;
 }
 

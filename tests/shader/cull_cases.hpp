@@ -125,10 +125,12 @@ private:
             LightCounts counts;
             const BuiltLists expected =
                 binned<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
-            const CulledGrid grid = make(device, simple(view, lights, 2 * expected.ids.size() + 1000));
+            const CullCase scene = simple(view, lights, 2 * expected.ids.size() + 1000);
+            const CulledGrid grid = make(device, scene);
             CullTally tally = compare_lists(grid, expected);
             tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
             add("sizes", tally);
+            add("sizes, masks", compare_masks(scene, grid, lights));
         }
     }
 
@@ -222,7 +224,9 @@ private:
                 binned<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
             CullCase scene = simple(view, lights, expected.ids.size() + 100);
             scene.binners_margin = true;
-            CullTally tally = compare_lists(make(device, scene), expected);
+            const CulledGrid grid = make(device, scene);
+            CullTally tally = compare_lists(grid, expected);
+            tally.add(compare_masks(scene, grid, lights));
             tally.wrong += tally.excess;
             add("the Binner's margin", tally);
         }
@@ -263,9 +267,10 @@ private:
             made.z_bounds = cull_depths(scene, {}, true, Slicing::clusters);
         }
         const CulledGrid grid = make(device, made);
-        CullTally tally = compare_lists(grid, expected);
-        tally.wrong += tally.excess * one_in > tally.entries;
-        add(name, tally);
+        for (CullTally tally : {compare_lists(grid, expected), compare_masks(made, grid, lights)}) {
+            tally.wrong += tally.excess * one_in > tally.entries;
+            add(name, tally);
+        }
     }
 
     /// One grid. Lights of world space are those of view space, moved by the inverse of a view matrix; the Binner gets
@@ -296,12 +301,17 @@ private:
         made.z_bounds = cull_depths(scene, bounds, way.depth_test, slicing);
         if (way.world_space) made.to_view = to_view();
         LightCounts counts;
-        const BuiltLists expected = way.world_space
-                                        ? binned<way.options()>(scene, world_space(lights, to_view()), counts)
-                                        : binned<way.options()>(scene, lights, counts);
+        const auto source = [&] {
+            if constexpr (way.world_space)
+                return world_space(lights, to_view());
+            else
+                return std::span(lights);
+        }();
+        const BuiltLists expected = binned<way.options()>(scene, source, counts);
         made.room = static_cast<std::uint32_t>(2 * expected.ids.size() + 30000);
         const CulledGrid grid = make(device, made);
         CullTally tally = compare_lists(grid, expected);
+        tally.add(compare_masks(made, grid, source));
         tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
         add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) + ", camera " +
                 std::to_string(camera) + ", tile " + std::to_string(tile_size),

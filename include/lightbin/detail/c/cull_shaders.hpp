@@ -69,6 +69,7 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
         filled.scratch_bytes = made->bytes.scratch;
         filled.tile_bytes = made->bytes.tiles;
         filled.list_bytes = made->bytes.lists;
+        filled.mask_bytes = made->bytes.masks;
         write_items(made->groups, std::size(made->groups), filled.groups, std::size(filled.groups), nullptr, "");
         static_assert(sizeof filled.constants >= sizeof made->constants);
         std::memcpy(filled.constants, &made->constants, sizeof made->constants);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cull_shader(): which text a pass has. The texts are in cull_project.hpp and cull_lists.hpp.
+// cull_shader(): which text a pass has. The texts are in cull_project.hpp, cull_lists.hpp and cull_masks.hpp.
 #pragma once
 
 #include <lightbin/detail/shader/cull_lists.hpp>
+#include <lightbin/detail/shader/cull_masks.hpp>
 #include <lightbin/detail/shader/cull_plan.hpp>
 #include <lightbin/detail/shader/cull_project.hpp>
 #include <lightbin/shader_cull.hpp>
@@ -23,6 +24,9 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
         break;
     case CullPass::offsets:
         add_offsets(writer, options);
+        break;
+    case CullPass::masks:
+        add_masks(writer, options);
         break;
     case CullPass::count:
     case CullPass::fill:

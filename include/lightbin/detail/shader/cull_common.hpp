@@ -19,14 +19,13 @@ inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
         {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
          options.lists, options.grid},
         {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
-         {options.kind == CullKind::box, {ErrorCode::no_cull_of_boxes}},
          {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
          {options.slicing == Slicing::z_bins, {ErrorCode::no_such_slicing_shader}}});
 }
 
 /// How many invocations a group of a pass has.
 constexpr unsigned cull_threads(CullPass pass) {
-    return pass == CullPass::sums || pass == CullPass::offsets ? 128 : 64;
+    return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
 }
 
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.

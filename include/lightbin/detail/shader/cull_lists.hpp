@@ -304,7 +304,8 @@ void $run(uvec2 group, uint thread) {
     writer.add("}\n");
 }
 
-/// Adds a prefix sum over the 128 numbers of a group, in `partial` (Hillis, Steele, "Data Parallel Algorithms", 1986).
+/// Adds `scan`, a prefix sum over the 128 numbers of a group, in `partial` (Hillis, Steele, "Data Parallel Algorithms",
+/// 1986).
 inline void add_scan(ShaderWriter& writer) {
     writer.declare_shared("partial", 128, false);
     add_saturated_sum(writer);
@@ -354,11 +355,27 @@ void $run(uvec2 group, uint thread) {
 )");
 }
 
-/// Adds the pass `offsets`: one work group adds up what the groups of the pass `sums` wrote, and writes CullTotals. For
-/// each 64 lights, the pass `project` left a word with the number of rejected ones and the number of those in view.
+/// Adds `total_lights`, with which one work group writes the numbers of lights of CullTotals. For each 64 lights, the
+/// pass `project` left a word with the number of rejected ones and, from bit 16 on, the number of those in view.
+inline void add_total_lights(ShaderWriter& writer) {
+    add_scan(writer);
+    writer.add(R"(
+void $total_lights(uint thread) {
+    uint groups = ($segments.x + 63u) >> 6u;
+    for (uint shift = 0u; shift < 32u; shift += 16u) {
+        uint own = 0u;
+        for (uint i = thread; i < groups; i += 128u) { own += ($scratch[$segments.w + i] >> shift) & 0xffffu; }
+        $scan(thread, own);
+        if (thread == 127u) { $scratch[1u + (shift >> 4u)] = $partial[thread]; }
+    }
+}
+)");
+}
+
+/// Adds the pass `offsets`: one work group adds up what the groups of the pass `sums` wrote, and writes CullTotals.
 inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
-    add_scan(writer);
+    add_total_lights(writer);
     writer.add(std::string(R"(
 void $run(uvec2 group, uint thread) {
     uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
@@ -375,23 +392,8 @@ void $run(uvec2 group, uint thread) {
         before = $sum(before, $partial[127]);
         sync_group();
     }
-    uint groups = ($segments.x + 63u) >> 6u;
-    uint rejected = 0u;
-    uint visible = 0u;
-    for (uint i = thread; i < groups; i += 128u) {
-        uint both = $scratch[$segments.w + i];
-        rejected += both & 0xffffu;
-        visible += both >> 16u;
-    }
-    $scan(thread, rejected);
-    uint all_rejected = $partial[127];
-    sync_group();
-    $scan(thread, visible);
-    if (thread == 0u) {
-        $scratch[0] = before;
-        $scratch[1] = all_rejected;
-        $scratch[2] = $partial[127];
-    }
+    $total_lights(thread);
+    if (thread == 0u) { $scratch[0] = before; }
 }
 )");
 }

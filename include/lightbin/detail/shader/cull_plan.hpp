@@ -103,14 +103,6 @@ inline std::uint64_t plan_scratch(const CullShaderOptions& options, std::uint64_
     return end;
 }
 
-/// Returns why the options or numbers of a plan are refused, or nothing.
-inline std::optional<Error> refuse_plan(const CullShaderOptions& options, const CullRoom& room, std::uint32_t slices) {
-    if (slices > cull_max_slices) return Error{ErrorCode::too_many_slices, slices, cull_max_slices};
-    if (options.ids == IdWidth::u16 && room.lights > 0x10000)
-        return Error{ErrorCode::too_many_lights, room.lights, 0x10000};
-    return {};
-}
-
 }  // namespace detail
 
 inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
@@ -121,7 +113,9 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     const bool clusters = options.slicing == Slicing::clusters;
     LIGHTBIN_ASSERT((slices != nullptr) == clusters && (to_view != nullptr) == options.world_space);
     const std::uint32_t slice_count = clusters ? static_cast<std::uint32_t>(slices->count()) : 1;
-    if (const auto error = refuse_plan(options, room, slice_count)) return *error;
+    if (slice_count > cull_max_slices) return Error{ErrorCode::too_many_slices, slice_count, cull_max_slices};
+    if (options.ids == IdWidth::u16 && room.lights > 0x10000)
+        return Error{ErrorCode::too_many_lights, room.lights, 0x10000};
     CullPlan plan;
     ShaderCull& to = plan.constants;
     to.tiles_x = static_cast<std::uint32_t>(view.tiles_x());
@@ -149,10 +143,13 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     to.segments = divided_up(steps, to.steps);
     const std::uint64_t words = plan_scratch(options, cells, to);
     if (words > 0xffffffff) return Error{ErrorCode::scratch_too_large, 4 * words, 4 * std::uint64_t{0xffffffff}};
+    const std::uint64_t mask_words = divided_up(to.lights, 32), of_each = to.tiles_x + to.tiles_y + 33,
+                        masks = 1 + of_each * mask_words;
+    if (masks > 0xffffffff) return Error{ErrorCode::too_many_entries, masks, 0xffffffff};
 
     const auto size = [](std::uint64_t bytes) { return max_of<std::uint64_t>((bytes + 3) / 4 * 4, 16); };
     plan.bytes = {size(4 * words), size(8 * cells),
-                  size(std::uint64_t{room.entries} * static_cast<unsigned>(options.ids))};
+                  size(std::uint64_t{room.entries} * static_cast<unsigned>(options.ids)), size(4 * masks)};
     const std::uint64_t blocks = std::uint64_t{divided_up(to.tiles_x, 8)} * divided_up(to.tiles_y, 8) * slice_count;
     const auto set = [&](CullPass pass, std::uint64_t count) {
         plan.groups[static_cast<std::size_t>(pass)] = cull_groups(max_of<std::uint64_t>(count, 1));
@@ -162,6 +159,7 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     set(CullPass::sums, divided_up(cells, 128));
     set(CullPass::offsets, 1);
     set(CullPass::fill, blocks * to.segments);
+    set(CullPass::masks, mask_words * divided_up(of_each, 128));
     return plan;
 }
 

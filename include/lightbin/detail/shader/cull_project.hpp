@@ -291,7 +291,7 @@ void $run(uvec2 group, uint thread) {
                R"(;
     if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
-        $scratch[)" + cull_record_of(options, "id") + R"(] = 1u;
+        $scratch[)" + cull_record_of(options, "id") + R"(] = 0x10001u;
         $scratch[)" + cull_record_of(options, "id") + R"( + 1u] = 0u;
     }
     if (id == 0u) { $scratch[3] = given; }
