@@ -26,15 +26,14 @@ constexpr const char* to_string(CullPass value) {
     return detail::name_at(value, {"project", "count", "sums", "offsets", "fill"});
 }
 
-/// What the lights in the buffer are. Boxes are refused.
+/// What the lights in the buffer are. Boxes are binned on the CPU.
 enum class CullKind : std::uint8_t {
     sphere,
     spot,  ///< those with a half angle beyond 138 degrees, such as Spot::whole() makes, count as whole spheres
-    box,
 };
 
 constexpr const char* to_string(CullKind value) {
-    return detail::name_at(value, {"sphere", "spot", "box"});
+    return detail::name_at(value, {"sphere", "spot"});
 }
 
 /// Where the numbers of a light lie in the caller's buffer, in words of 32 bits. The defaults are those of an array of

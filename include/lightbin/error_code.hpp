@@ -69,7 +69,6 @@ enum class ErrorCode : std::uint8_t {
     bindings_overlap,
     not_a_prefix,
     // light grids made on the GPU
-    no_cull_of_boxes,
     too_many_slices,
     view_matrix_distorts,
     scratch_too_large,
@@ -158,7 +157,6 @@ inline constexpr const char* error_sentences[] = {
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("the option prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
-    "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
     "a grid that is built on the GPU has at most {available} slices, not {given}",
     ("the world-to-view matrix distorts lengths by more than 32, or scales them by more than 2^20 or less than 2^-20: "
      "transform the lights to view space before they are culled"),

@@ -146,10 +146,9 @@ typedef enum lightbin_error {
     LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 147,
     LIGHTBIN_BINDINGS_OVERLAP = 148,
     LIGHTBIN_NOT_A_PREFIX = 149,
-    LIGHTBIN_NO_CULL_OF_BOXES = 150,
-    LIGHTBIN_TOO_MANY_SLICES = 151,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 152,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 153,
+    LIGHTBIN_TOO_MANY_SLICES = 150,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 151,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 152,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -560,19 +559,19 @@ LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbi
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
 
-/* Masks of the columns and rows of tiles. A light that is listed in a rectangle of tiles is in tile (x, y) exactly if it
- * is in column x and in row y: the lights of the tile are those whose bits are set in
+/* Masks of the columns and rows of tiles. A light that is listed in a rectangle of tiles is in tile (x, y) exactly if
+ * it is in column x and in row y: the lights of the tile are those whose bits are set in
  *
  *     words[1 + x * mask_words + w] & words[1 + (tiles_x + 1 + y) * mask_words + w]      for w < mask_words
  *
- * Bit b stands for the light ids[32 * w + b]. Set `size` before the call that fills the struct in. The arrays are memory
- * of the binner, which is valid until the binner's next call. */
+ * Bit b stands for the light ids[32 * w + b]. Set `size` before the call that fills the struct in. The arrays are
+ * memory of the binner, which is valid until the binner's next call. */
 typedef struct lightbin_masks {
     uint32_t size;
     int32_t tiles_x, tiles_y;
     uint32_t mask_words; /* in each mask: enough for all lights in view, and 0 if there are none */
-    /* All that a shader reads, to be uploaded as it is: mask_words; the masks of all columns, and an empty one; those of
-     * all rows; 32 * mask_words ids, which are 0 beyond the lights in view; and the bins. */
+    /* All that a shader reads, to be uploaded as it is: mask_words; the masks of all columns, and an empty one; those
+     * of all rows; 32 * mask_words ids, which are 0 beyond the lights in view; and the bins. */
     const uint32_t* words;
     const uint32_t* ids; /* of the lights in view, in ascending order, or with z-bins in order of depth */
     const lightbin_bin_range* bins; /* with z-bins, else null: for each the range in `ids` of the lights that meet it */
@@ -581,8 +580,8 @@ typedef struct lightbin_masks {
     uint32_t unused;
 } lightbin_masks;
 
-/* Makes masks in place of lists: every tile has the same lights, in memory whose size depends on the number of lights in
- * view alone. docs/tiles.md says when to use them.
+/* Makes masks in place of lists: every tile has the same lights, in memory whose size depends on the number of lights
+ * in view alone. docs/tiles.md says when to use them.
  *
  * binner, inputs  as for lightbin_bin(); the binner has no depth test and no clusters, and threads are not used
  *
@@ -925,11 +924,10 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_FILL = 4     /* writes the lists */
 } lightbin_cull_pass;
 
-/* What the lights in the buffer are. Boxes are refused. */
+/* What the lights in the buffer are. Boxes are binned on the CPU. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
-    LIGHTBIN_CULL_SPOT = 1, /* those with a half angle beyond 138 degrees count as whole spheres */
-    LIGHTBIN_CULL_BOX = 2
+    LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */
 } lightbin_cull_kind;
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
@@ -970,8 +968,8 @@ typedef struct lightbin_cull_options {
  * that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
  *
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
- * LIGHTBIN_NO_CULL_OF_BOXES, LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER,
- * LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
+ * LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE,
+ * LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                                   lightbin_shader** shader);
 

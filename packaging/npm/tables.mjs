@@ -13,15 +13,11 @@ const camel = name => name.replaceAll(/_([a-z])/g, (_, letter) => letter.toUpper
 const kebab = name => name.toLowerCase().replaceAll('_', '-');
 const bare = type => type.replace(/^lightbin_/, '');
 
-// Values that the package, or the function that is given them, always refuses.
-const never = /^cull_kind\.box$/;
-
 const enums = {};
 for (const [, name, body] of header.matchAll(/typedef enum lightbin_(\w+) \{(.*?)\} lightbin_\1;/gs))
     enums[name] = Object.fromEntries(
         [...body.matchAll(/\bLIGHTBIN_(?:RESOURCE_|CULL_)?(\w+)\s*=\s*(\d+)/g)]
-            .map(([, value, number]) => [kebab(value), +number])
-            .filter(([value]) => !never.test(`${name}.${value}`)));
+            .map(([, value, number]) => [kebab(value), +number]));
 
 const script = fs.readFileSync(user, 'utf8');
 const named = name => script.includes(`'${camel(name)}'`) || script.includes(`structs.${camel(name)}.`);

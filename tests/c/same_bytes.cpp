@@ -564,8 +564,9 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
     const auto slices = make_slices();
     const lightbin_matrix to_view = {view_matrix, nullptr, LIGHTBIN_COLUMN_MAJOR, 0};
     const Matrix cpp_to_view = matrix(view_matrix, MatrixLayout::column_major);
-    for (int kind = LIGHTBIN_CULL_SPHERE; kind <= LIGHTBIN_CULL_BOX; ++kind)  // boxes are refused
+    for (int slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing)  // z-bins are refused
         for (const bool all : {false, true}) {
+            const int kind = slicing == LIGHTBIN_CLUSTERS ? LIGHTBIN_CULL_SPOT : LIGHTBIN_CULL_SPHERE;
             auto options = sized<lightbin_cull_options>();
             CullShaderOptions cpp = {.kind = static_cast<CullKind>(kind)};
             options.kind = kind;
@@ -574,8 +575,8 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                 options.language = LIGHTBIN_WGSL, options.prefix = "mine_", options.stride = 20, options.centre = 3;
                 options.radius = 9, options.axis = 11, options.cosine = 17, options.world_space = 1;
                 options.count_in_buffer = 1, options.count_at = 7, options.ids = LIGHTBIN_U16, options.depth_test = 1;
-                options.slicing = kind, options.max_only = kind == 0, options.orthographic = 1, options.slots_given = 1;
-                options.lights = {9, 2}, options.z_bounds = {8, 2}, options.scratch = {7, 2}, options.slices = {6, 2};
+                options.slicing = slicing, options.max_only = slicing == 0, options.orthographic = 1;
+                options.slots_given = 1, options.lights = {9, 2}, options.z_bounds = {8, 2}, options.scratch = {7, 2}, options.slices = {6, 2};
                 options.tiles = {5, 1}, options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
                 cpp = {.language = ShaderLanguage::wgsl,
                        .kind = cpp.kind,
@@ -585,8 +586,8 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                        .count_at = 7,
                        .ids = IdWidth::u16,
                        .depth_test = true,
-                       .slicing = static_cast<Slicing>(kind),
-                       .max_only = kind == 0,
+                       .slicing = static_cast<Slicing>(slicing),
+                       .max_only = slicing == 0,
                        .orthographic = true,
                        .lights = {9, 2},
                        .z_bounds = {8, 2},
@@ -611,7 +612,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                                    all ? &to_view : nullptr, &plan);
             const auto expected = plan_cull(cpp_view, cpp, {60'000, 5000}, sliced ? &cpp_slices : nullptr,
                                             all ? &cpp_to_view : nullptr);
-            REQUIRE(expected.has_value() == (kind != LIGHTBIN_CULL_BOX));
+            REQUIRE(expected.has_value() == (cpp.slicing != Slicing::z_bins));
             if (!expected) {
                 CHECK(text(result) == expected.error().message().c_str());
                 continue;

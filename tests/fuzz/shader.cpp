@@ -500,14 +500,13 @@ void fuzz_cull(Bytes& bytes) {
               {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.tiles,
                &options.light_count, &options.lists, &options.grid},
               question);
-    options.kind = take_enum(bytes, CullKind::box);
+    options.kind = take_enum(bytes, CullKind::spot);
     options.ids = static_cast<IdWidth>(4u >> bytes.byte() % 3);
     options.lights_at = {take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes),
                          take_size(bytes)};
     options.count_at = take_size(bytes);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
-    if (options.kind == CullKind::box) question.reasons.insert(ErrorCode::no_cull_of_boxes);
     if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
     if (options.slicing == Slicing::z_bins) question.reasons.insert(ErrorCode::no_such_slicing_shader);
     question.constants_in_block = true;

@@ -19,7 +19,6 @@ inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
         {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
          options.lists, options.grid},
         {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
-         {options.kind == CullKind::box, {ErrorCode::no_cull_of_boxes}},
          {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
          {options.slicing == Slicing::z_bins, {ErrorCode::no_such_slicing_shader}}});
 }
