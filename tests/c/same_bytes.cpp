@@ -576,8 +576,9 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                 options.radius = 9, options.axis = 11, options.cosine = 17, options.world_space = 1;
                 options.count_in_buffer = 1, options.count_at = 7, options.ids = LIGHTBIN_U16, options.depth_test = 1;
                 options.slicing = slicing, options.max_only = slicing == 0, options.orthographic = 1;
-                options.slots_given = 1, options.lights = {9, 2}, options.z_bounds = {8, 2}, options.scratch = {7, 2}, options.slices = {6, 2};
-                options.tiles = {5, 1}, options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
+                options.slots_given = 1, options.lights = {9, 2}, options.z_bounds = {8, 2};
+                options.scratch = {7, 2}, options.slices = {6, 2}, options.tiles = {5, 1};
+                options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
                 cpp = {.language = ShaderLanguage::wgsl,
                        .kind = cpp.kind,
                        .lights_at = {20, 3, 9, 11, 17},
