@@ -30,7 +30,7 @@ constexpr const char* to_string(CullPass value) {
     return detail::name_at(value, {"project", "count", "sums", "offsets", "fill", "masks"});
 }
 
-/// What the lights in the buffer are.
+/// What the lights in the buffer are. Boxes are binned on the CPU.
 enum class CullKind : std::uint8_t {
     sphere,
     spot,  ///< those with a half angle beyond 138 degrees, such as Spot::whole() makes, count as whole spheres

@@ -151,7 +151,7 @@ inline constexpr const char* error_sentences[] = {
     "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
     ("lists that are built on the GPU are of tiles or of clusters, not of z-bins; masks are of tiles or of z-bins, not "
-     "of clusters"),
+     "of clusters, and have no depth test"),
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",

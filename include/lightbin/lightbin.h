@@ -559,6 +559,37 @@ LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbi
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
 
+/* Masks of the columns and rows of tiles. A light that is listed in a rectangle of tiles is in tile (x, y) exactly if
+ * it is in column x and in row y: the lights of the tile are those whose bits are set in
+ *
+ *     words[1 + x * mask_words + w] & words[1 + (tiles_x + 1 + y) * mask_words + w]      for w < mask_words
+ *
+ * Bit b stands for the light ids[32 * w + b]. Set `size` before the call that fills the struct in. The arrays are
+ * memory of the binner, which is valid until the binner's next call. */
+typedef struct lightbin_masks {
+    uint32_t size;
+    int32_t tiles_x, tiles_y;
+    uint32_t mask_words; /* in each mask: enough for all lights in view, and 0 if there are none */
+    /* All that a shader reads, to be uploaded as it is: mask_words; the masks of all columns, and an empty one; those
+     * of all rows; 32 * mask_words ids, which are 0 beyond the lights in view; and the bins. */
+    const uint32_t* words;
+    const uint32_t* ids; /* of the lights in view, in ascending order, or with z-bins in order of depth */
+    const lightbin_bin_range* bins; /* with z-bins, else null: for each the range in `ids` of the lights that meet it */
+    uint64_t word_count, id_count, bin_count;
+    uint32_t lights, rejected, culled, first_spot, first_box; /* as in lightbin_grid */
+    uint32_t unused;
+} lightbin_masks;
+
+/* Makes masks in place of lists: every tile has the same lights, in memory whose size depends on the number of lights
+ * in view alone. docs/tiles.md says when to use them.
+ *
+ * binner, inputs  as for lightbin_bin(); the binner has no depth test and no clusters, and threads are not used
+ *
+ * Errors: those of lightbin_bin(); LIGHTBIN_NO_SUCH_SLICING_SHADER, of such a binner. */
+LIGHTBIN_API lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view* view,
+                                                const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                                lightbin_masks* masks);
+
 /* What a light in view covers. */
 typedef struct lightbin_light_coverage {
     uint32_t id;             /* the light's id as lightbin_lights numbers it */
@@ -759,6 +790,7 @@ typedef struct lightbin_snippet_options {
     int32_t slots_given;          /* 0: the slots are the bindings 0 to 5 of set 0 in the order below */
     lightbin_slot tiles, lists, grid, slices, bins, view;
     uint32_t views; /* how many views' lists lie one after another in the buffers, up to 512; 0: 1 */
+    int32_t masks;  /* read lightbin_masks::words, bound at `lists`, in place of lists and their format */
 } lightbin_snippet_options;
 
 /* A shader text and the resources to bind for it. */
@@ -893,7 +925,7 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_MASKS = 5    /* in place of count to fill: writes masks of the columns and rows of tiles */
 } lightbin_cull_pass;
 
-/* What the lights in the buffer are. */
+/* What the lights in the buffer are. Boxes are binned on the CPU. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
     LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */
@@ -940,8 +972,8 @@ typedef struct lightbin_cull_options {
  * option masks: docs/gpu.md says more.
  *
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
- * LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER, LIGHTBIN_NOT_A_PREFIX,
- * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
+ * LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE,
+ * LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
 LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                                   lightbin_shader** shader);
 

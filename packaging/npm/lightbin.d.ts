@@ -218,10 +218,32 @@ export interface Grid {
     countEntries(): Uint32Array;
 }
 
+/**
+ * Masks of the columns and rows of tiles. Bit b of word w of a mask stands for the light ids[32 * w + b], and the lights
+ * of tile (x, y) are those that both its column and its row have. The arrays hold as those of a Grid do.
+ */
+export interface Masks {
+    /** As in Grid. */
+    readonly lights: number, rejected: number, culled: number, firstSpot: number, firstBox: number;
+    readonly tilesX: number, tilesY: number;
+    /** The number of words of 32 bits in each mask, 0 if no light is in view. */
+    readonly maskWords: number;
+    /** All that a shader reads, to be uploaded as it is: maskWords; the masks of all columns, and an empty one; those of
+     * all rows; 32 * maskWords ids, which are 0 beyond the lights in view; and the bins. */
+    readonly words: Uint32Array;
+    /** The lights in view, in ascending order, or with z-bins in order of depth. */
+    readonly ids: Uint32Array;
+    /** With z-bins: two numbers for each bin, the first and the last place in `ids` of the lights that meet it. */
+    readonly bins: Uint32Array;
+}
+
 /** Bins lights into tiles, and keeps the memory that this takes. */
 export interface Binner extends Disposable {
     /** Makes the lists of the lights in a view. Each call returns the same object, with the new lists. */
     bin(view: View, lights: Lights, inputs?: Inputs): Grid;
+    /** Makes masks of columns and rows, by which every tile has the lights of its list, in a few kilobytes. A binner
+     * with a depth test or clusters has none. Each call returns the same object, with the new masks. */
+    masks(view: View, lights: Lights, inputs?: Inputs): Masks;
 }
 
 export interface ListFormat {
@@ -249,6 +271,8 @@ export interface ShaderOptions {
     slicing?: Slicing;
     /** Default: the lists of a binner whose ids have 32 bits. */
     format?: ListFormat;
+    /** Read Masks.words, bound at `lists`, in place of lists and their format. */
+    masks?: boolean;
     /** Every name in the text begins with it. Default: 'lightbin_'. */
     prefix?: string;
     /** In pixels, fixed in the text. Default: read at run time from the constant `grid`. */

@@ -536,45 +536,56 @@ function slices_of(core, boundaries, margin = 0) {
     });
 }
 
-// A member of lightbin_grid that is an array: its address and length are members of these names.
+// The members of structs that are arrays: which member has the number of items, and of how many numbers an item is.
 const array_of = {
-    ranges: grid => 2 * grid.rangeCount, ids: grid => grid.idCount, order: grid => grid.orderCount,
-    bins: grid => 2 * grid.binCount,
+    ranges: ['rangeCount', 2], ids: ['idCount', 1], order: ['orderCount', 1], bins: ['binCount', 2],
+    words: ['wordCount', 1],
 };
-const nothing = {
-    tilesX: 0, tilesY: 0, slices: 0, lights: 0, rejected: 0, culled: 0, ranges: 0, ids: 0, rangeCount: 0, idCount: 0,
-    idBytes: 4, firstSpot: 0, firstBox: 0, order: 0, bins: 0, orderCount: 0, binCount: 0,
-};
-const own_members = ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'firstSpot', 'firstBox'];
+const zeros = struct => Object.fromEntries(names[struct].map(key => [key, 0]));
+const nothing = {grid: {...zeros('grid'), idBytes: 4}, masks: zeros('masks')};
+const raw = Symbol('what the module wrote'), array = Symbol('an array of it');
 
-/// The lists of a binner's call, read from the module's memory.
-class Lists {
+/// What a binner's call made, read from the module's memory.
+class Made {
     #core;
-    #raw;
-    #encoded;
+    #own;
     #arrays = {};
-    constructor(core, encoded) {
+    constructor(core, struct) {
         this.#core = core;
-        this.#encoded = encoded;
-        this.set(nothing);
+        this.#own = names[struct].filter(key => !(key in array_of || key.endsWith('Count')));
+        this.set(nothing[struct]);
     }
-    /// Takes what a Binner read: all members of `nothing`.
-    set(raw) {
-        if (raw === this.#raw) return this;
-        this.#raw = raw;
-        for (const key of own_members) this[key] = raw[key];
+    /// Takes what a Binner read: all members of the struct.
+    set(read) {
+        if (read === this[raw]) return this;
+        this[raw] = read;
+        for (const key of this.#own) this[key] = read[key];
         return this;
     }
-    #array(key) {
-        const Type = key === 'ids' && this.idBytes === 2 ? Uint16Array : Uint32Array;
-        return this.#arrays[key] = this.#core.array(Type, this.#raw[key], array_of[key](this.#raw), this.#arrays[key]);
+    get ids() { return this[array]('ids', this.idBytes === 2 ? Uint16Array : Uint32Array); }
+    get bins() { return this[array]('bins'); }
+    [array](key, Type = Uint32Array) {
+        const read = this[raw], [count, numbers] = array_of[key];
+        return this.#arrays[key] = this.#core.array(Type, read[key], numbers * read[count], this.#arrays[key]);
     }
-    get ranges() { return this.#array('ranges'); }
-    get ids() { return this.#array('ids'); }
-    get order() { return this.#array('order'); }
-    get bins() { return this.#array('bins'); }
+}
+
+class Masks extends Made {
+    get words() { return this[array]('words'); }
+}
+
+class Lists extends Made {
+    #core;
+    #encoded;
+    constructor(core, encoded) {
+        super(core, 'grid');
+        this.#core = core;
+        this.#encoded = encoded;
+    }
+    get ranges() { return this[array]('ranges'); }
+    get order() { return this[array]('order'); }
     encode(format) {
-        const core = this.#core, {size, ...members} = this.#raw, {rangeCount, idCount} = members;
+        const core = this.#core, {size, ...members} = this[raw], {rangeCount, idCount} = members;
         return core.scope(c => {
             const from = core.place('format', format, 'format'), grid = core.place('grid', members, 'grid');
             const bytes_at = c.stackAlloc(8);
@@ -593,15 +604,15 @@ class Lists {
                 refuse('append: a grid was not made by this module');
             if (grid.idBytes !== this.idBytes)
                 refuse(`append: the ids of one grid have ${this.idBytes} bytes, those of another ${grid.idBytes}`);
-            if (['tilesX', 'tilesY', 'slices'].some(key => grid.#raw[key] !== this.#raw[key]))
+            if (['tilesX', 'tilesY', 'slices'].some(key => grid[raw][key] !== this[raw][key]))
                 refuse('append: the grids must have the same numbers of columns and rows of tiles and of slices: give '
                     + 'their views the same viewport and tile size, and bin with the same slices', 'grids-differ');
         }
         if (new Set(grids).size < grids.length)
             refuse('append: a grid is given twice; each view needs the grid of a binner of its own');
-        const sum = key => grids.reduce((sum, grid) => sum + grid.#raw[key], 0);
+        const sum = key => grids.reduce((sum, grid) => sum + grid[raw][key], 0);
         const rangeCount = sum('rangeCount'), idCount = sum('idCount');
-        const to = this.#encoded.reserve(8 * rangeCount + this.#raw.idBytes * idCount), {buffer} = core.c.memory;
+        const to = this.#encoded.reserve(8 * rangeCount + this[raw].idBytes * idCount), {buffer} = core.c.memory;
         const all = {ranges: new Uint32Array(buffer, to, 2 * rangeCount),
                      ids: new this.ids.constructor(buffer, to + 8 * rangeCount, idCount)};
         let at = 0, offset = 0;
@@ -625,7 +636,7 @@ class Lists {
         return {longest, histogram};
     }
     countEntries() {
-        const {ids, order} = this, entries = new Uint32Array(this.#raw.lights);
+        const {ids, order} = this, entries = new Uint32Array(this[raw].lights);
         for (const id of ids) ++entries[order.length > 0 ? order[id] : id];
         return entries;
     }
@@ -635,29 +646,26 @@ class Binner extends Held {
     #core;
     #encoded;
     #grid;
+    #masks;
     constructor(core, options) {
         super(core, 'binner');
         this.#core = core;
         this.#encoded = new Block(core);
         this.#grid = new Lists(core, this.#encoded);
+        this.#masks = new Masks(core, 'masks');
         this[address] = core.scope(c => core.create(c.lightbin_binner_create,
             core.place('binnerOptions', options, 'options')));
     }
-    bin(view, lights, inputs) {
-        const core = this.#core;
-        return this.#call(view, lights, inputs, (c, ...given) => {
-            const grid = core.place('grid');
-            core.check(c.lightbin_bin, ...given, grid);
-            return this.#grid.set(core.read('grid', grid, {...nothing}));
-        });
-    }
-    #call(view, lights, inputs, body) {
+    bin(...given) { return this.#call(this.#core.c.lightbin_bin, 'grid', this.#grid, ...given); }
+    masks(...given) { return this.#call(this.#core.c.lightbin_bin_masks, 'masks', this.#masks, ...given); }
+    #call(called, struct, made, view, lights, inputs) {
         const core = this.#core;
         this.#forget();
-        return core.scope(c => {
-            const placed = core.lights(lights), others = core.inputs(inputs);
+        return core.scope(() => {
+            const placed = core.lights(lights), others = core.inputs(inputs), at = core.place(struct);
             core.flush();
-            return body(c, this[address], core.addressOf(view, View, 'view'), placed, others);
+            core.check(called, this[address], core.addressOf(view, View, 'view'), placed, others, at);
+            return made.set(core.read(struct, at));
         });
     }
     dispose() {
@@ -666,7 +674,8 @@ class Binner extends Held {
         this.#forget();
     }
     #forget() {
-        this.#grid.set(nothing);
+        this.#grid.set(nothing.grid);
+        this.#masks.set(nothing.masks);
     }
 }
 

@@ -397,6 +397,71 @@ static void test_binners(void) {
     lightbin_slices_destroy(slices);
 }
 
+/* Masks of columns and rows. */
+static void test_masks(void) {
+    lightbin_view_options view_given = view_options();
+    lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
+    lightbin_lights lights = lights_given();
+    lightbin_inputs inputs;
+    lightbin_z_bounds bounds = bounds_given();
+    lightbin_grid grid = empty_grid();
+    lightbin_masks masks;
+    lightbin_binner *binner = NULL, *refused = NULL;
+    lightbin_view* view = NULL;
+    lightbin_slices* slices = NULL;
+    int test, slicing, x, y;
+    CLEAR(inputs);
+    CLEAR(masks);
+    CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
+    CHECK(lightbin_binner_create(NULL, &binner).error == LIGHTBIN_OK);
+    CHECK(lightbin_slices_linear(3, 1, 9, 0, &slices).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_bin_masks(NULL, view, &lights, NULL, &masks), LIGHTBIN_NULL_ARGUMENT, "binner"));
+    CHECK(refuses(lightbin_bin_masks(binner, NULL, &lights, NULL, &masks), LIGHTBIN_NULL_ARGUMENT, "view"));
+    CHECK(refuses(lightbin_bin_masks(binner, view, NULL, NULL, &masks), LIGHTBIN_NULL_ARGUMENT, "lights"));
+    CHECK(refuses(lightbin_bin_masks(binner, view, &lights, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "masks"));
+    inputs.bounds = &bounds;
+    CHECK(refuses(lightbin_bin_masks(binner, view, &lights, &inputs, &masks), LIGHTBIN_NOT_READ,
+                  "inputs.bounds"));
+    inputs.bounds = NULL;
+    inputs.slices = slices;
+    CHECK(refuses(lightbin_bin_masks(binner, view, &lights, &inputs, &masks), LIGHTBIN_NOT_READ,
+                  "inputs.slices"));
+    for (test = 0; test <= 1; ++test)
+        for (slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
+            if (test == 0 && slicing != LIGHTBIN_CLUSTERS) continue;
+            options = options_given(test, slicing);
+            CHECK(lightbin_binner_create(&options, &refused).error == LIGHTBIN_OK);
+            CHECK(lightbin_bin_masks(refused, view, &lights, &inputs, &masks).error ==
+                  LIGHTBIN_NO_SUCH_SLICING_SHADER);
+            lightbin_binner_destroy(refused);
+        }
+    CHECK(masks.words == NULL);
+
+    /* Each tile has the lights of its list. */
+    CHECK(lightbin_bin_masks(binner, view, &lights, NULL, &masks).error == LIGHTBIN_OK);
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(masks.tiles_x == 20 && masks.tiles_y == 13 && masks.lights == light_count && masks.first_spot == 200);
+    CHECK(masks.id_count == masks.lights - masks.rejected - masks.culled && masks.bins == NULL);
+    CHECK(masks.words[0] == masks.mask_words && masks.ids == masks.words + 1 + 34 * masks.mask_words);
+    CHECK(masks.word_count == 1 + (34 + 32) * masks.mask_words);
+    for (y = 0; y < masks.tiles_y; ++y)
+        for (x = 0; x < masks.tiles_x; ++x) {
+            const uint32_t* column = masks.words + 1 + (size_t)x * masks.mask_words;
+            const uint32_t* row = masks.words + 1 + (size_t)(21 + y) * masks.mask_words;
+            const lightbin_range list = grid.ranges[y * masks.tiles_x + x];
+            uint32_t i, found = 0, same = 0;
+            for (i = 0; i < masks.id_count; ++i)
+                if ((column[i / 32] & row[i / 32]) >> i % 32 & 1) {
+                    same += found < list.count && ((const uint32_t*)grid.ids)[list.offset + found] == masks.ids[i];
+                    ++found;
+                }
+            CHECK(found == list.count && same == found);
+        }
+    lightbin_binner_destroy(binner);
+    lightbin_slices_destroy(slices);
+    lightbin_view_destroy(view);
+}
+
 /* Lights that are made of shapes. */
 static void test_shapes(void) {
     const float a[3] = {0, 0, -5}, b[3] = {4, 0, -5};
@@ -777,6 +842,15 @@ static lightbin_result use_everything(uint64_t* sum) {
             }
             for (i = 0; result.error == LIGHTBIN_OK && i < grid.id_count; ++i)
                 *sum = *sum * 31 + ((const uint32_t*)grid.ids)[i];
+            if (result.error == LIGHTBIN_OK && test == 0 && slicing != LIGHTBIN_CLUSTERS) {
+                lightbin_masks masks;
+                CLEAR(masks);
+                result = lightbin_bin_masks(binner, view, &lights, &inputs, &masks);
+                if (result.error == LIGHTBIN_OUT_OF_MEMORY)
+                    CHECK(lightbin_bin_masks(binner, view, &lights, &inputs, &masks).error == LIGHTBIN_OK);
+                for (i = 0; i < masks.word_count; ++i)
+                    *sum = *sum * 31 + masks.words[i];
+            }
             lightbin_binner_destroy(binner);
         }
     lightbin_shader_destroy(shader);
@@ -794,8 +868,10 @@ static void test_memory(void) {
     lightbin_view_options view_given = view_options();
     lightbin_lights lights = lights_given();
     lightbin_grid grid = empty_grid();
+    lightbin_masks masks;
     lightbin_view* view = NULL;
     lightbin_binner* binner = NULL;
+    CLEAR(masks);
     CHECK(use_everything(&expected).error == LIGHTBIN_OK);
     CHECK(blocks == kept); /* nothing leaks */
     calls = allocations - before;
@@ -816,8 +892,10 @@ static void test_memory(void) {
     CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(NULL, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(lightbin_bin_masks(binner, view, &lights, NULL, &masks).error == LIGHTBIN_OK);
     calls = allocations;
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(lightbin_bin_masks(binner, view, &lights, NULL, &masks).error == LIGHTBIN_OK);
     CHECK(lightbin_view_update(view, &view_given).error == LIGHTBIN_OK);
     CHECK(allocations == calls);
     lightbin_binner_destroy(binner);
@@ -836,6 +914,7 @@ int main(void) {
     test_views();
     test_slices();
     test_binners();
+    test_masks();
     test_shapes();
     test_grids();
     test_depth();

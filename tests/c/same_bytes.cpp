@@ -10,6 +10,7 @@
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/shader_cull.hpp>
 #include <lightbin/shader_reduce.hpp>
@@ -151,6 +152,15 @@ Owned<lightbin_binner> make_binner(const lightbin_binner_options* options = null
     return owned<lightbin_binner>([=](auto binner) { return lightbin_binner_create(options, binner); });
 }
 
+/// Compares the counts of lights in a lightbin_grid or lightbin_masks.
+template <class Made> void compare_counts(const LightCounts& expected, const Made& made) {
+    CHECK(made.lights == expected.lights);
+    CHECK(made.rejected == expected.rejected);
+    CHECK(made.culled == expected.culled);
+    CHECK(made.first_spot == expected.first_spot);
+    CHECK(made.first_box == expected.first_box);
+}
+
 template <class Id> void compare(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     CHECK(grid.id_bytes == sizeof(Id));
     CHECK(grid.tiles_x == expected.tiles_x());
@@ -160,11 +170,17 @@ template <class Id> void compare(const LightGrid<Id>& expected, const lightbin_g
     CHECK(equal(expected.ids(), grid.ids, grid.id_count));
     CHECK(equal(expected.ranks().order, grid.order, grid.order_count));
     CHECK(equal(expected.ranks().bins, grid.bins, grid.bin_count));
-    CHECK(grid.lights == expected.light_counts().lights);
-    CHECK(grid.rejected == expected.light_counts().rejected);
-    CHECK(grid.culled == expected.light_counts().culled);
-    CHECK(grid.first_spot == expected.light_counts().first_spot);
-    CHECK(grid.first_box == expected.light_counts().first_box);
+    compare_counts(expected.light_counts(), grid);
+}
+
+void compare(const LightMasks& expected, const lightbin_masks& masks) {
+    CHECK(masks.tiles_x == expected.tiles_x());
+    CHECK(masks.tiles_y == expected.tiles_y());
+    CHECK(masks.mask_words == expected.mask_words());
+    CHECK(equal(expected.words(), masks.words, masks.word_count));
+    CHECK(equal(expected.ids(), masks.ids, masks.id_count));
+    CHECK(equal(expected.bins(), masks.bins, masks.bin_count));
+    compare_counts(expected.light_counts(), masks);
 }
 
 /// What is made of a finished grid, on both sides.
@@ -320,6 +336,15 @@ template <Options options> void compare_sides() {
                 *expected.bin(cpp_view, cpp_lights, inputs_for<options>({scene.min, scene.max}, cpp_slices));
             compare(cpp_grid, grid);
             if (first_spot == count / 3) compare_uses(cpp_grid, grid);
+            if constexpr (!options.depth_test && options.slicing != Slicing::clusters) {
+                MaskBinner cpp_binner;
+                const LightMasks cpp_masks = options.slicing == Slicing::z_bins
+                                                 ? *cpp_binner.bin(cpp_view, cpp_lights, cpp_slices)
+                                                 : *cpp_binner.bin(cpp_view, cpp_lights);
+                auto masks = sized<lightbin_masks>();
+                works(lightbin_bin_masks(binner.get(), view.get(), &lights, &inputs, &masks));
+                compare(cpp_masks, masks);
+            }
             if constexpr (options.ids == IdWidth::u16) {
                 std::vector<lightbin_light_coverage> covered(count);
                 std::size_t covered_count = 0;
@@ -479,6 +504,12 @@ TEST_CASE("C: shader texts are those of C++, in each language") {
                                             .prefix = "mine_"}),
                             result, made);
         }
+    auto of_masks = sized<lightbin_snippet_options>();
+    of_masks.slicing = LIGHTBIN_Z_BINS, of_masks.masks = 1;
+    lightbin_shader* masked = nullptr;
+    const lightbin_result made_masked = lightbin_shader_snippet(&of_masks, &masked);
+    compare_shaders(shader_snippet({.slicing = Slicing::z_bins, .masks = true}), made_masked, masked);
+
     auto options = sized<lightbin_reduce_options>();
     options.language = LIGHTBIN_GLSL_VULKAN, options.prefix = "mine_", options.fragment = 1, options.samples = 4;
     options.format = LIGHTBIN_UNORM16, options.reversed_z = 1, options.orthographic = 1, options.skip_background = 1;
@@ -543,9 +574,10 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                 options.language = LIGHTBIN_WGSL, options.prefix = "mine_", options.stride = 20, options.centre = 3;
                 options.radius = 9, options.axis = 11, options.cosine = 17, options.world_space = 1;
                 options.count_in_buffer = 1, options.count_at = 7, options.ids = LIGHTBIN_U16, options.depth_test = 1;
-                options.slicing = kind, options.max_only = kind == 0, options.orthographic = 1, options.slots_given = 1;
-                options.lights = {9, 2}, options.z_bounds = {8, 2}, options.scratch = {7, 2}, options.slices = {6, 2};
-                options.tiles = {5, 1}, options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
+                options.slicing = kind, options.max_only = kind == 0, options.orthographic = 1;
+                options.slots_given = 1, options.lights = {9, 2}, options.z_bounds = {8, 2};
+                options.scratch = {7, 2}, options.slices = {6, 2}, options.tiles = {5, 1};
+                options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
                 cpp = {.language = ShaderLanguage::wgsl,
                        .kind = cpp.kind,
                        .lights_at = {20, 3, 9, 11, 17},

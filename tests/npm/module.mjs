@@ -107,6 +107,60 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     return [view, slices, wide, cones, rooms];
 });
 
+test_both('masks have the lights of the lists in every tile, with and without z-bins', async lightbin => {
+    const view = lightbin.view({...square, width: 300}), floats = lightbin.floats(4 * 150);
+    const slices = lightbin.exponentialSlices({count: 9, first: 2, last: 50}), made = [view, floats, slices];
+    floats.array.set(random_spheres(150));
+    const axes = Float32Array.from({length: 3 * 50}, () => random(-1, 1));
+    const spots = random_spheres(50), boxes = random_spheres(20);
+    const lights = {viewMatrix: identity, spheres: {array: floats},
+        spots: {array: spots, stride: 4, axis: axes, cosine: new Float32Array(50).fill(0.8)},
+        boxes: {boxCentre: boxes, halfAxes: Float32Array.from({length: 9 * 6}, () => random(-3, 3)), count: 6}};
+    for (const slicing of ['no-slicing', 'z-bins']) {
+        const binner = lightbin.binner({slicing}), inputs = slicing === 'z-bins' ? {slices} : {};
+        const grid = binner.bin(view, lights, inputs), {order} = grid, bins = [...grid.bins];
+        const lists = lists_of(grid).map(list => list.map(id => order.length > 0 ? order[id] : id));
+        const masks = binner.masks(view, lights, inputs), words = masks.maskWords;
+        assert.equal(grid.ids.length, 0);  // the lists ended with the next call
+        const same = () => {
+            const {words: all, ids} = masks, has = (mask, i) => all[1 + mask * words + (i >> 5)] >>> i % 32 & 1;
+            const tiles = Array.from({length: masks.tilesX * masks.tilesY}, (_, tile) => {
+                const [x, y] = [tile % masks.tilesX, Math.floor(tile / masks.tilesX)];
+                return [...ids].filter((_, i) => has(x, i) && has(masks.tilesX + 1 + y, i));
+            });
+            assert.deepEqual(tiles, lists);
+        };
+        same();
+        assert.ok(lists.flat().some(id => id >= masks.firstBox) && masks.firstSpot === 150);
+        assert.deepEqual([masks.lights, masks.rejected, masks.culled + masks.ids.length], [206, 0, 206]);
+        assert.deepEqual([...masks.bins], bins);
+        const size = 1 + (masks.tilesX + 1 + masks.tilesY + 32) * words;
+        assert.equal(masks.words[0], words);
+        assert.deepEqual([...masks.words.subarray(size)], bins);
+        assert.equal(masks.words, masks.words);  // not made again while the memory stands
+        const old = masks.words, large = lightbin.floats(old.buffer.byteLength / 4);
+        assert.equal(old.length, 0);
+        same();
+        large.dispose();
+        const live = lightbin.allocations;
+        assert.equal(binner.masks(view, lights, inputs), masks);
+        assert.equal(lightbin.allocations, live);
+        assert.throws(() => binner.masks(null, lights, inputs), {code: 'null-argument', message: /^view: /});
+        assert.deepEqual([masks.words.length, masks.ids.length, masks.lights], [0, 0, 0]);
+        binner.masks(view, lights, inputs);
+        same();
+        const {text} = await lightbin.shader({language: 'essl-300', storage: 'texture-2d', slicing, masks: true});
+        assert.match(text, /usampler2D lightbin_masks/);
+        binner.dispose();
+        assert.equal(masks.words.length, 0);
+    }
+    for (const options of [{depthTest: true}, {slicing: 'clusters'}]) {
+        made.push(lightbin.binner(options));
+        assert.throws(() => made.at(-1).masks(view, lights), {code: 'no-such-slicing-shader', message: /masks are of/});
+    }
+    return made;
+});
+
 test_both('lights as arrays, interleaved, in the module\'s memory, at any place: the same lists', lightbin => {
     const count = 100, spheres = random_spheres(count);
     const view = lightbin.view(square), binner = lightbin.binner();
@@ -616,7 +670,7 @@ test('the package is whole and small', async () => {
     const gzip = name => zlib.gzipSync(fs.readFileSync(path.join(folder, name)), {level: 9}).length;
     for (const name of ['lightbin.wasm', 'lightbin_simd.wasm']) {
         const bytes = gzip('lightbin.js') + gzip(name);
-        assert.ok(bytes <= 58000, `${name} and the JavaScript are ${bytes} bytes, compressed`);
+        assert.ok(bytes <= 60000, `${name} and the JavaScript are ${bytes} bytes, compressed`);
     }
     // In a browser the module comes by fetch().
     const fetched = globalThis.fetch;

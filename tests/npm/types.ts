@@ -11,6 +11,7 @@ export async function use(gl: WebGL2RenderingContext) {
     const spheres = {array: lamps, stride: 16, centre: 0, radius: [1, 2, 3]};
     const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});
     gl.bufferData(gl.ARRAY_BUFFER, grid.ids, gl.STREAM_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, binner.masks(view, {spheres}).words, gl.STREAM_DRAW);
     const [x, y, depth] = view.project([1, 2, 3]), {longest, histogram} = grid.listLengths();
     gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + histogram[longest]);
     gl.bufferData(gl.ARRAY_BUFFER, grid.countEntries(), view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);

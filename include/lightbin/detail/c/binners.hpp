@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that make lists.
+// The C side's functions that make lists and masks.
 #pragma once
 
 #include <lightbin/binner.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/detail/c/lights.hpp>
 #include <lightbin/detail/c/views.hpp>
+#include <lightbin/masks.hpp>
 
 #include <atomic>
 
@@ -73,6 +74,7 @@ struct AnyHow {
 struct lightbin_binner {
     lightbin::c::AnyHow how;
     lightbin::detail::Stages<lightbin::c::AnyHow> stages = {};
+    lightbin::MaskBinner masks{how.is.isa};
 };
 
 namespace lightbin {
@@ -154,6 +156,24 @@ inline lightbin_result check_input(bool is_read, const void* given, lightbin_err
     return refused(is_read ? if_missing : LIGHTBIN_NOT_READ, name);
 }
 
+/// Reads what a call is given, or returns why that is refused.
+///
+/// masks  the call makes masks and not lists
+inline lightbin_result read_call(bool masks, const lightbin_binner* binner, const lightbin_view* view,
+                                 const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
+                                 CallLights& lights, lightbin_inputs& inputs) {
+    lightbin_result result = first_error(check_pointers({{binner, "binner"}, {view, "view"}}),
+                                         read_lights(given_lights, lights));
+    if (result.error == LIGHTBIN_OK && given_inputs != nullptr) result = read(given_inputs, inputs, "inputs");
+    if (result.error != LIGHTBIN_OK) return result;
+    const Options& options = binner->how.is;
+    const bool clusters = options.slicing == Slicing::clusters;
+    if (masks && (clusters || options.depth_test)) return refused(Error{ErrorCode::no_such_slicing_shader});
+    return first_error(
+        check_input(options.slicing != Slicing::none, inputs.slices, LIGHTBIN_NO_SLICES_GIVEN, "inputs.slices"),
+        check_input(options.depth_test && !clusters, inputs.bounds, LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
+}
+
 }  // namespace c
 }  // namespace lightbin
 
@@ -187,17 +207,8 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
     CallLights lights;
     lightbin_inputs inputs = {};
     lightbin::ZBounds bounds;
-    lightbin_result result =
-        first_error(check_size(grid, "grid"), check_pointers({{binner, "binner"}, {view, "view"}}),
-                    read_lights(given_lights, lights));
-    if (result.error == LIGHTBIN_OK && given_inputs != nullptr) result = read(given_inputs, inputs, "inputs");
-    if (result.error != LIGHTBIN_OK) return result;
-    const lightbin::Options& options = binner->how.is;
-    result = first_error(
-        check_input(options.slicing != lightbin::Slicing::none, inputs.slices, LIGHTBIN_NO_SLICES_GIVEN,
-                    "inputs.slices"),
-        check_input(options.depth_test && options.slicing != lightbin::Slicing::clusters, inputs.bounds,
-                    LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
+    lightbin_result result = first_error(check_size(grid, "grid"),
+                                         read_call(false, binner, view, given_lights, given_inputs, lights, inputs));
     if (result.error == LIGHTBIN_OK && inputs.bounds != nullptr)
         result = read_bounds(inputs.bounds, view->value, bounds);
     return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
@@ -208,9 +219,34 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
             return made ? write_grid(*made, grid) : refused(made.error());
         };
 #if !defined(LIGHTBIN_NO_U16)
-        if (options.ids == lightbin::IdWidth::u16) return bin(std::uint16_t());
+        if (binner->how.is.ids == lightbin::IdWidth::u16) return bin(std::uint16_t());
 #endif
         return bin(std::uint32_t());
+    });
+}
+
+lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view* view,
+                                   const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
+                                   lightbin_masks* masks) {
+    using namespace lightbin::c;
+    CallLights lights;
+    lightbin_inputs inputs = {};
+    const lightbin_result result = first_error(
+        check_size(masks, "masks"), read_call(true, binner, view, given_lights, given_inputs, lights, inputs));
+    return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads&) {
+        const auto bin = [&](const auto&... slices) {
+            const auto made = binner->masks.bin(view->value, lights.all(), slices...);
+            if (!made) return refused(made.error());
+            const lightbin::LightCounts& counts = made->light_counts();
+            return write({0, made->tiles_x(), made->tiles_y(), made->mask_words(), made->words().data(),
+                          made->ids().data(), same_layout<lightbin_bin_range>(made->bins().data()),
+                          made->words().size(), made->ids().size(), made->bins().size(), counts.lights,
+                          counts.rejected, counts.culled, counts.first_spot, counts.first_box, 0},
+                         masks);
+        };
+        if constexpr (AnyHow::may.z_bins)
+            if (inputs.slices != nullptr) return bin(inputs.slices->value);
+        return bin();
     });
 }
 

@@ -84,8 +84,7 @@ private:
                             : sliced          ? Kept::lights
                                               : Kept::nothing);
         if constexpr (How::may.clusters || How::may.z_bins) {
-            const DepthBucketsKernel kernel =
-                how.with_kind(source, [=]<LightKind kind>() { return depth_buckets_kernel<kind>(isa); });
+            const DepthBucketsKernel kernel = depth_buckets_kernel<Source::kind>(isa);
             if constexpr (How::may.clusters)
                 if (how.is.slicing == Slicing::clusters) return sliced_.order(kernel, view, footprints_, *slices);
             if constexpr (How::may.z_bins)
