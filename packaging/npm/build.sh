@@ -63,15 +63,16 @@ planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|des
     module shaders "$text|$planned" "" -Oz
 }
 
-# The shader text of the adapter for three.js, whose options do not change, so that it needs no module for that.
+# The shader texts of the adapter for three.js, whose options do not change, so that it needs no module for that.
 node --input-type=module - "$out" <<'END'
 import fs from 'node:fs';
 import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 const folder = path.resolve(process.argv[2]), {load} = await import(pathToFileURL(`${folder}/node.js`));
-const {text} = await (await load()).shader(
-    {language: 'essl-300', storage: 'texture-2d', slicing: 'clusters'});
-fs.writeFileSync(`${folder}/three_text.js`, `export const text = ${JSON.stringify(text)};\n`);
+const lightbin = await load(), given = {language: 'essl-300', storage: 'texture-2d'};
+const texts = await Promise.all([{slicing: 'clusters'}, {slicing: 'z-bins', masks: true}].map(async options =>
+    (await lightbin.shader({...given, ...options})).text));
+fs.writeFileSync(`${folder}/three_text.js`, `export const [lists, masks] = ${JSON.stringify(texts)};\n`);
 END
 
 for name in lightbin lightbin_simd; do

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 import type {Camera, Object3D, WebGLRenderer} from 'three';
-import type {Grid, Lightbin} from './lightbin.js';
+import type {Grid, Lightbin, Masks} from './lightbin.js';
 
 export interface ClusteredLightsOptions {
+    /** Make masks with z-bins in place of lists, for up to about a thousand lights in view: they take less time to
+     * make, and one texture whose size is the same for up to 1,024 lights. More lights make it larger. Default: false. */
+    masks?: boolean;
     /** The side of a square tile in pixels. Default: 32. */
     tileSize?: number;
-    /** The number of depth slices. Default: 24. */
+    /** The number of depth slices. Default: 24, with masks 128. */
     slices?: number;
     /** The view depth at which the first slice ends. Default: between the camera's near and far planes. */
     firstSlice?: number;
-    /** Default: true, which makes shorter lists in more time. */
+    /** Default: true, which makes shorter lists in more time. Masks have none. */
     depthTest?: boolean;
     /**
      * Lights without an end (`distance` 0) are drawn as three.js draws them with the distance at which their strongest
@@ -40,6 +43,8 @@ export class ClusteredLights {
     readonly update: (renderer: WebGLRenderer, scene: Object3D, camera: Camera) => void;
     /** The lists of the last update; where these are one list of all lights, those of a viewport of one pixel. */
     readonly grid: Grid;
+    /** With the option `masks`, what the last update made in place of `grid`. */
+    readonly masks: Masks;
     /** Frees all memory and textures, and leaves lights and materials to three.js. update() then does nothing. */
     dispose(): void;
 }

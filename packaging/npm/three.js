@@ -6,14 +6,14 @@ import {
     DataTexture, FloatType, Layers, NearestFilter, RedIntegerFormat, RGBAFormat, RGIntegerFormat, ShaderChunk,
     UnsignedIntType, Vector3, Vector4,
 } from 'three';
-import {text} from './three_text.js';
+import * as texts from './three_text.js';
 
 // A light has 16 floats, four texels of a texture of this width:
 // view-space x, y, z, range for the lists | red, green, blue, decay | direction x, y, z, cone's cosine | penumbra's
 // cosine, three.js' distance (0 without an end), 1 for spots
-const light_floats = 16, lights_per_row = 256, ids_per_row = 2048;
+const light_floats = 16, lights_per_row = 256, words_per_row = 2048;
 
-const declarations = `${text}
+const declarations = `
 uniform highp sampler2D lightbin_lights;
 uniform highp vec4 lightbin_viewport;
 vec4 lightbin_texel( uint light, uint texel ) {
@@ -54,10 +54,12 @@ const is_lit = material => material?.isMeshStandardMaterial || material?.isMeshP
     || material?.isMeshLambertMaterial || material?.isMeshToonMaterial;
 
 // Of the textures, each with its number of channels.
+const word = [RedIntegerFormat, 'R32UI', 1];
 const formats = {
-    slices: [RedIntegerFormat, 'R32UI', 1], tiles: [RGIntegerFormat, 'RG32UI', 2],
-    lists: [RedIntegerFormat, 'R32UI', 1], lights: [RGBAFormat, 'RGBA32F', 4],
+    slices: word, tiles: [RGIntegerFormat, 'RG32UI', 2], lists: word, masks: word, lights: [RGBAFormat, 'RGBA32F', 4],
 };
+/// The rows of a texture that has room for so many words. There are few numbers, so that it is seldom made again.
+const rows_of = words => 2 ** Math.ceil(Math.log2(Math.max(words / words_per_row, 1)));
 
 // Of a picture whose only tile lists all lights.
 const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
@@ -77,13 +79,16 @@ export class ClusteredLights {
     #key = `lightbin ${++made}`;
     #uniforms = {};
 
-    constructor(lightbin, {tileSize = 32, slices = 24, firstSlice, depthTest = true, cutoff = 0, ...others} = {}) {
+    constructor(lightbin, {masks = false, tileSize = 32, slices = masks ? 128 : 24, firstSlice, depthTest = !masks,
+                           cutoff = 0, ...others} = {}) {
         for (const key in others)
-            throw new Error(`options: there is no '${key}', but tileSize, slices, firstSlice, depthTest, cutoff`);
+            throw new Error(`options: there is no '${key}', but masks, tileSize, slices, firstSlice, depthTest,`
+                + ' cutoff');
+        if (masks && depthTest) throw new Error('options.depthTest: masks have no depth test');
         if (!(cutoff >= 0 && cutoff < Infinity)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
         this.#lightbin = lightbin;
-        this.#options = {slices, firstSlice, cutoff};
-        this.#binner = lightbin.binner({slicing: 'clusters', depthTest});
+        this.#options = {masks, slices, firstSlice, cutoff};
+        this.#binner = lightbin.binner({slicing: masks ? 'z-bins' : 'clusters', depthTest});
         this.#view = lightbin.view({...one_pixel, tileSize});
         lightbin.linearSlices({count: slices, begin: 0, end: 1}).dispose();  // refuses a wrong number
         this.update = this.update.bind(this);
@@ -227,19 +232,29 @@ export class ClusteredLights {
         this.#view.update(projection);
         this.#slice(picture);
         const {array} = picture.floats, stride = light_floats;
-        const grid = this.grid = this.#binner.bin(this.#view, {
+        const given = [this.#view, {
             spheres: {array, stride, count: points},
             spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
-        }, {slices: picture.slices});
-        const tile_rows = Math.max(grid.tilesY * grid.slices, 1);
-        const id_rows = 2 ** Math.ceil(Math.log2(Math.max(grid.ids.length / ids_per_row, 1)));
-        if (Math.max(tile_rows, id_rows) > picture.renderer.capabilities?.maxTextureSize)
-            throw new Error('the clusters or the lists have more rows than a texture of this device');
+        }, {slices: picture.slices}];
+        if (this.#options.masks) this.#upload_masks(picture, this.masks = this.#binner.masks(...given));
+        else this.#upload_lists(picture, this.grid = this.#binner.bin(...given));
         picture.grid = this.#view.shaderGrid().subarray(0, 4);
-        this.#upload(picture, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
-        this.#upload(picture, 'lists', grid.ids, ids_per_row, id_rows);
         const floats = picture.floats.array;  // read anew, as the module's memory may have grown
         this.#upload(picture, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
+    }
+
+    #upload_masks(picture, {words, tilesX, tilesY}) {
+        // The room for 1,024 lights, so that the texture stays the same for all numbers up to that.
+        const room = 1 + 32 * (tilesX + tilesY + 33) + 2 * this.#options.slices;
+        this.#upload(picture, 'masks', words, words_per_row, rows_of(Math.max(words.length, room)));
+    }
+
+    #upload_lists(picture, grid) {
+        const tile_rows = Math.max(grid.tilesY * grid.slices, 1), id_rows = rows_of(grid.ids.length);
+        if (Math.max(tile_rows, id_rows) > picture.renderer.capabilities?.maxTextureSize)
+            throw new Error('the clusters or the lists have more rows than a texture of this device');
+        this.#upload(picture, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
+        this.#upload(picture, 'lists', grid.ids, words_per_row, id_rows);
     }
 
     /// Makes a picture's slices again if the camera's planes are others.
@@ -281,6 +296,7 @@ export class ClusteredLights {
         if (Array.isArray(material)) return material.forEach(each => this.#patch(each));
         if (!is_lit(material) || material[patched_by] !== undefined) return;
         const {onBeforeCompile, customProgramCacheKey} = material, uniforms = this.#uniforms, key = this.#key;
+        const text = this.#options.masks ? texts.masks : texts.lists;
         material.onBeforeCompile = function(shader, renderer) {
             onBeforeCompile.call(this, shader, renderer);
             Object.assign(shader.uniforms, uniforms);
@@ -289,7 +305,7 @@ export class ClusteredLights {
                 .replace(/#if \( NUM_SUN_LIGHTS > 0 \) && defined|#if \( NUM_DIR_LIGHTS > 0 \) && defined/,
                     match => loop + match);
             shader.fragmentShader = shader.fragmentShader
-                .replace('#include <lights_pars_begin>', `#include <lights_pars_begin>\n${declarations}`)
+                .replace('#include <lights_pars_begin>', `#include <lights_pars_begin>\n${text}${declarations}`)
                 .replace('#include <lights_fragment_begin>', lit);
         };
         // three.js calls onBeforeCompile only for keys that the material did not have before.

@@ -56,6 +56,31 @@ test('5,000 moving lights: as every light in every fragment draws them, byte by 
     }
 });
 
+test('masks in place of lists: as three.js draws few lights itself, and as lists draw 1,000', async () => {
+    const {few, many, seen, control} = await page.evaluate(() => {
+        const pictures = () => [stage.draw(), stage.draw(stage.other)];
+        const drawn = (options, make) => {
+            stage.own();
+            make();
+            if (options !== undefined) stage.cluster(options);
+            return pictures();
+        };
+        const few = () => stage.lights(70, 30), many = () => stage.lights(700, 300, {range: 1.5});
+        stage.resize(320, 200);
+        const few_own = drawn(undefined, few), few_masks = drawn({masks: true}, few);
+        const many_lists = drawn({}, many), many_masks = drawn({masks: true}, many);
+        const {lights, rejected, bins, tilesX} = stage.clusters.masks;
+        const seen = {lights, rejected, bins: bins.length, tilesX};
+        stage.lamps.forEach((lamp, i) => { lamp.visible = i % 5 !== 0; });
+        return {few: few_own.map((own, i) => difference(own, few_masks[i])),
+                many: many_lists.map((lists, i) => difference(lists, many_masks[i])), seen,
+                control: difference(many_masks[0], pictures()[0]).pixels};
+    });
+    for (const result of [...few, ...many]) same(result, 'a picture', 1);  // lights are added in another order
+    assert.deepEqual(seen, {lights: 1000, rejected: 0, bins: 256, tilesX: 10});
+    assert.ok(control > 300, 'it makes no difference if lights are left out');
+});
+
 test('another size, several cameras, a corner of the window and a render target', async () => {
     const results = await page.evaluate(() => {
         const {renderer, THREE} = stage, results = {};
@@ -298,7 +323,8 @@ test('workers make the same lists, of the module that they were sent or load the
 test('an option that is misspelt or wrong is named', async () => {
     const messages = await page.evaluate(async () => {
         const {ClusteredLights} = await import('lightbin/three');
-        return [{tilesize: 16}, {tileSize: -1}, {slices: 0}, {cutoff: -1}].map(options => {
+        const mistakes = [{tilesize: 16}, {tileSize: -1}, {slices: 0}, {cutoff: -1}, {masks: true, depthTest: true}];
+        return mistakes.map(options => {
             try {
                 new ClusteredLights(stage.lightbin, options);
             } catch (error) {
@@ -306,7 +332,7 @@ test('an option that is misspelt or wrong is named', async () => {
             }
         });
     });
-    [/there is no 'tilesize', but tileSize, slices/, /tile size/, /slice/, /options.cutoff: -1/].forEach(
+    [/there is no 'tilesize', but masks, tileSize/, /tile size/, /slice/, /options.cutoff: -1/, /depthTest/].forEach(
         (words, i) => assert.match(messages[i], words));
 });
 
