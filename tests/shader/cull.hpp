@@ -237,7 +237,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     tally.cases = tally.wrong = 1;
     const std::span<const std::uint32_t> words = grid.masks;
     if (words.size() != (std::max)(size, std::size_t{4}) + 16 || words[0] != each) return tally;
-    const lightbin::LightMasks made(columns, rows, words.first(size), {static_cast<std::uint32_t>(32 * each)}, {});
+    const lightbin::LightMasks made(columns, rows, words.first(size), {static_cast<std::uint32_t>(32 * each)},
+                                    {});
     const auto only = [](std::span<const std::uint32_t> part, std::uint32_t value) {
         return std::all_of(part.begin(), part.end(), [&](std::uint32_t word) { return word == value; });
     };
@@ -247,7 +248,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     tally.wrong = !only(empty, 0) || !only(words.subspan(size), 0xeeeeeeee) ||
                   !std::equal(numbers.begin(), numbers.end(), made.ids().begin(), made.ids().end()) ||
                   grid.totals.rejected != grid.mask_totals.rejected ||
-                  grid.totals.visible != grid.mask_totals.visible || grid.totals.lights != grid.mask_totals.lights;
+                  grid.totals.visible != grid.mask_totals.visible ||
+                  grid.totals.lights != grid.mask_totals.lights;
     const auto compare = [&](std::span<const std::uint32_t> own, std::span<const std::uint32_t> theirs) {
         std::vector<std::uint32_t> wanted(each);
         for (std::size_t i = 0; i < expected.ids().size(); ++i)
