@@ -153,7 +153,8 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote.
+/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote. Behind
+/// the last light it finds what would be lights in all tiles.
 template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
@@ -167,6 +168,11 @@ template <class Device> CulledGrid run_cull(Device& device, const CullCase& scen
     grid.lists = written["lists"];
     std::swap(written["lists"], written["masks"]);
     std::fill_n(written["scratch"].begin(), 3, 0xeeeeeeee);
+    for (std::size_t light = room_of(scene).lights; light % 64 != 0; ++light) {
+        const std::size_t record = 4 + light * detail::cull_record_words(scene.options);
+        written["scratch"][record] = 0;
+        written["scratch"][record + 1] = 0xffffffff;
+    }
     run_passes(device, scene, plan, std::span(cull_mask_passes).last(1), written);
     std::memcpy(&grid.mask_totals, written["scratch"].data(), sizeof grid.mask_totals);
     grid.masks = written["lists"];
