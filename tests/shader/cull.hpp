@@ -153,7 +153,8 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote.
+/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote. Behind
+/// the last light it finds what would be lights in all tiles.
 template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
@@ -167,6 +168,11 @@ template <class Device> CulledGrid run_cull(Device& device, const CullCase& scen
     grid.lists = written["lists"];
     std::swap(written["lists"], written["masks"]);
     std::fill_n(written["scratch"].begin(), 3, 0xeeeeeeee);
+    for (std::size_t light = room_of(scene).lights; light % 64 != 0; ++light) {
+        const std::size_t record = 4 + light * detail::cull_record_words(scene.options);
+        written["scratch"][record] = 0;
+        written["scratch"][record + 1] = 0xffffffff;
+    }
     run_passes(device, scene, plan, std::span(cull_mask_passes).last(1), written);
     std::memcpy(&grid.mask_totals, written["scratch"].data(), sizeof grid.mask_totals);
     grid.masks = written["lists"];
@@ -237,7 +243,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     tally.cases = tally.wrong = 1;
     const std::span<const std::uint32_t> words = grid.masks;
     if (words.size() != (std::max)(size, std::size_t{4}) + 16 || words[0] != each) return tally;
-    const lightbin::LightMasks made(columns, rows, words.first(size), {static_cast<std::uint32_t>(32 * each)}, {});
+    const lightbin::LightMasks made(columns, rows, words.first(size), {static_cast<std::uint32_t>(32 * each)},
+                                    {});
     const auto only = [](std::span<const std::uint32_t> part, std::uint32_t value) {
         return std::all_of(part.begin(), part.end(), [&](std::uint32_t word) { return word == value; });
     };
@@ -247,7 +254,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     tally.wrong = !only(empty, 0) || !only(words.subspan(size), 0xeeeeeeee) ||
                   !std::equal(numbers.begin(), numbers.end(), made.ids().begin(), made.ids().end()) ||
                   grid.totals.rejected != grid.mask_totals.rejected ||
-                  grid.totals.visible != grid.mask_totals.visible || grid.totals.lights != grid.mask_totals.lights;
+                  grid.totals.visible != grid.mask_totals.visible ||
+                  grid.totals.lights != grid.mask_totals.lights;
     const auto compare = [&](std::span<const std::uint32_t> own, std::span<const std::uint32_t> theirs) {
         std::vector<std::uint32_t> wanted(each);
         for (std::size_t i = 0; i < expected.ids().size(); ++i)
