@@ -12,8 +12,7 @@ Technique masked_forward(lightbin::Slicing slicing) {
     const bool z_bins = slicing == lightbin::Slicing::z_bins;
     const auto binner = std::make_shared<lightbin::MaskBinner>();
     return {z_bins ? "MaskedForward z-bins" : "MaskedForward", [=](Stage& stage) {
-                const float reach = depth_of_lights(stage);
-                const auto slices = value_of(lightbin::Slices::exponential(128, reach / 200, reach));
+                const auto slices = value_of(lightbin::Slices::linear(1024, 0, depth_of_lights(stage)));
                 const auto masks = value_of(z_bins ? binner->bin(stage.view(), stage.lights(), slices)
                                                    : binner->bin(stage.view(), stage.lights()));
                 stage.lap("bin");
