@@ -7,12 +7,15 @@
 #include "tiled_view.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/masks.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -25,6 +28,7 @@ struct Built {
     std::span<const std::uint32_t> ids = {};        ///< where they are of 32 bits; with z-bins ranks
     std::span<const lightbin::BinRange> bins = {};  ///< with z-bins
     std::span<const std::uint32_t> order = {};      ///< with z-bins, the light of each rank
+    std::optional<lightbin::LightMasks> masks = {}; ///< in place of all that, but for bytes and slices
 };
 
 /// Builds with the slices that the view has for them.
@@ -50,6 +54,36 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const Ligh
             const lightbin::ZBounds& bounds) {
     return std::visit([&](const auto& any) { return build(binner, view, any, bounds); }, lights);
 }
+
+/// What masks say as lists of ranks, in memory of its own.
+class MaskLists {
+public:
+    explicit MaskLists(const Built& of) : built_(of) {
+        for (int y = 0; y < of.masks->tiles_y(); ++y)
+            for (int x = 0; x < of.masks->tiles_x(); ++x)
+                add(of.masks->column(x), of.masks->row(y));
+        built_.ranges = ranges_;
+        built_.ids = ranks_;
+        built_.bins = of.masks->bins();
+        built_.order = of.masks->ids();
+    }
+    MaskLists(const MaskLists&) = delete;  // the spans would be of the other's memory
+
+    const Built& built() const { return built_; }
+
+private:
+    void add(std::span<const std::uint32_t> column, std::span<const std::uint32_t> row) {
+        const auto offset = static_cast<std::uint32_t>(ranks_.size());
+        for (std::uint32_t w = 0; w < column.size(); ++w)
+            for (std::uint32_t bits = column[w] & row[w]; bits != 0; bits &= bits - 1)
+                ranks_.push_back(32 * w + static_cast<std::uint32_t>(std::countr_zero(bits)));
+        ranges_.push_back({offset, static_cast<std::uint32_t>(ranks_.size()) - offset});
+    }
+
+    Built built_;
+    std::vector<lightbin::ListRange> ranges_;
+    std::vector<std::uint32_t> ranks_;
+};
 
 using BuildLists = std::function<Built(const TiledView&, const LightSet&)>;
 

@@ -110,7 +110,7 @@ private:
 
 /// What a build's lists give the pixels of a reference.
 struct Reading {
-    std::uint64_t evaluations = 0;
+    std::uint64_t evaluations = 0, words = 0;  ///< words of masks
     std::uint64_t misses = 0;            ///< lights that reach a pixel and are not in its list
     std::uint32_t pixel = 0, light = 0;  ///< the last of them
 };
@@ -133,6 +133,9 @@ inline Reading read_lists(const TiledView& view, const Picture& picture, const B
             built.ids.subspan(built.ranges[cell].offset, built.ranges[cell].count);
         if (!built.bins.empty()) list = lightbin::lights_of_bin(list, built.bins[slice]);
         reading.evaluations += list.size();
+        if (built.masks)
+            reading.words += built.bins.empty() ? built.masks->mask_words()
+                                                : built.bins[slice].greatest / 32 - built.bins[slice].least / 32 + 1;
         if (list.data() != before.data() || list.size() != before.size() || list_number == 0) {
             ++list_number;
             for (const std::uint32_t id : list)

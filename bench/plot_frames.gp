@@ -3,7 +3,7 @@
 # Figure 2) to frames_times, and light evaluations (Figure 3) to frames_evaluations.
 set datafile separator ","
 colours = "#999999 #d95f02 #e6a23c #1b6ca8 #49a0d8 #2a9d4e #8cc63f #111111 #7b3fa0 #c9529c"
-curves = "'Forward with every light' 'TiledForward' 'TiledForward-PreZ' 'TiledForward-PreZ both' 'TiledForward-PreZ box' 'ClusteredForward' 'ZBinnedForward' 'TiledDeferred six planes 16 bit' 'Deferred 16 bit' 'DeferredStencil 16 bit'"
+curves = "'Forward with every light' 'TiledForward' 'TiledForward-PreZ' 'TiledForward-PreZ both' 'TiledForward-PreZ box' 'ClusteredForward' 'ZBinnedForward' 'MaskedForward z-bins' 'Deferred 16 bit' 'DeferredStencil 16 bit'"
 count_of_curves = words(colours)
 panels = system("tail -n +2 frames_paths.csv | cut -d'\"' -f2 | uniq | tr ' ' '_'")
 rows_of(panel, curve) = sprintf("< tr ' ' '_' < frames_paths.csv | grep -F '\"%s\",' | grep -F ',%s,'", panel, system("echo '".curve."' | tr ' ' '_'"))

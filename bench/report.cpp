@@ -7,9 +7,10 @@
 //   bounds_ms       median of reduce_depth() on the CPU, where the method takes Z bounds. Drawing the depth is not in it
 //   build_ms        of the lists, lights in to lists out on one core, on rotating light sets
 //   upload_ms       of copying what a shader reads of them, lights left out, to memory that it can read
-//   shade_ms        evaluations of all pixels times evaluation_ns
+//   shade_ms        evaluations of all pixels times evaluation_ns; a word of masks is Costs::word_evaluations of one
 //   total_ms        these together, with the 10th and 90th percentile of the frames
 //   evals, needed   light evaluations a drawn pixel, and of those lights that reach its point; ratio: of the two
+//   words           of masks that a drawn pixel looks at
 //   front           1 on the Pareto front: no other is both faster and nearer to what is needed
 //   misses          lights that reach a pixel and are not in its list. For ours they end the run
 // and a row for each place to end lights, `ends smooth` (cutoff.hpp), of 16-pixel tiles with `box`:
@@ -56,7 +57,7 @@ struct Result {
     Way way;
     double bounds, build, upload, shade;  ///< milliseconds a frame
     double total, low, high;
-    double evaluations, ratio, kilobytes;
+    double evaluations, words, ratio, kilobytes;
     std::uint64_t misses;
     bool front = false;
 };
@@ -116,7 +117,7 @@ struct PreparedView {
 /// Of one way, milliseconds of the frames and sums over the views.
 struct Measured {
     std::vector<double> bounds, build, upload;
-    double evaluations = 0, bytes = 0;  ///< of all sampled pixels
+    double evaluations = 0, words = 0, bytes = 0;  ///< of all sampled pixels
     std::uint64_t misses = 0;
 };
 
@@ -126,7 +127,9 @@ void count(const std::vector<PreparedView>& views, const Way& way, const std::st
         const TiledView& tiled = view.tiled.of(way.tile_size);
         const Built built = way.build(tiled, lights_of(view.seen.scene, way.form, 0));
         const auto width = static_cast<std::uint32_t>(view.seen.picture.size.width);
-        const Reading reading = read_lists(tiled, view.seen.picture, built, view.needed);
+        const Reading reading =
+            read_lists(tiled, view.seen.picture, built.masks ? MaskLists(built).built() : built, view.needed);
+        measured.words += static_cast<double>(reading.words);
         measured.evaluations += static_cast<double>(reading.evaluations);
         measured.bytes += static_cast<double>(built.bytes) / static_cast<double>(views.size());
         measured.misses += reading.misses;
@@ -145,7 +148,8 @@ double upload_ms(const Built& built) {
     return 1e3 * seconds([&] {
                std::byte* to = memory.data();
                for (const auto bytes :
-                    {std::as_bytes(built.ranges), std::as_bytes(built.ids), std::as_bytes(built.bins)})
+                    {std::as_bytes(built.ranges), std::as_bytes(built.ids), std::as_bytes(built.bins),
+                     built.masks ? std::as_bytes(built.masks->words()) : std::span<const std::byte>()})
                    to = std::ranges::copy(bytes, to).out;
            });
 }
@@ -226,7 +230,8 @@ std::string advice_of(const SceneReport& report, const PreparedView& view) {
     const auto result_of = [&](const lightbin::Plan& plan) {
         return std::ranges::find_if(report.results, [&](const Result& r) {
             return ours(r.way) && plan.tiled && r.way.tile_size == plan.tile_size &&
-                   r.way.depth_test == plan.depth_test && r.way.slicing == plan.slicing;
+                   r.way.depth_test == plan.depth_test && r.way.slicing == plan.slicing &&
+                   r.way.masks == plan.masks;
         });
     };
     std::erase_if(plans, [&](const auto& plan) { return result_of(plan) == report.results.end(); });
@@ -277,13 +282,14 @@ SceneReport measure(Case scene) {
     time(views, ways, measured);
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const Measured& m = measured[i];
-        const double evaluations = m.evaluations / pixels, shade = evaluations * drawn * evaluation_ns * 1e-6;
+        const double evaluations = m.evaluations / pixels, words = m.words / pixels,
+                     shade = (evaluations + words * lightbin::Costs{}.word_evaluations) * drawn * evaluation_ns * 1e-6;
         std::vector<double> totals;
         for (std::size_t turn = 0; turn < m.build.size(); ++turn)
             totals.push_back(m.bounds[turn] + m.build[turn] + m.upload[turn] + shade);
         report.results.push_back({ways[i], median(m.bounds), median(m.build), median(m.upload), shade,
                                   median(totals), percentile(totals, 0.1), percentile(totals, 0.9),
-                                  evaluations, m.evaluations / needed, m.bytes / 1e3, m.misses});
+                                  evaluations, words, m.evaluations / needed, m.bytes / 1e3, m.misses});
     }
     mark_front(report.results);
     report.advice = advice_of(report, views[0]);
@@ -295,18 +301,18 @@ void write_csv(const std::vector<SceneReport>& reports) {
     std::FILE* const csv = open_report(
         "report.csv",
         "scene,lights,views,method,tile_px,bounds_ms,build_ms,upload_ms,shade_ms,total_ms,total_p10_ms,"
-        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored");
+        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored,words");
     for (const SceneReport& report : reports) {
         for (const Result& r : report.results)
             std::fprintf(csv,
                          "%s,%zu,%zu,%s,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.3f,%.4f,%.1f,%d,%"
-                         "llu,%g,,,\n",
+                         "llu,%g,,,,%.3f\n",
                          report.name.c_str(), report.lights, report.views, r.way.method, r.way.tile_size,
                          r.bounds, r.build, r.upload, r.shade, r.total, r.low, r.high, r.evaluations,
                          report.needed, r.ratio, r.kilobytes, r.front,
-                         static_cast<unsigned long long>(r.misses), evaluation_ns);
+                         static_cast<unsigned long long>(r.misses), evaluation_ns, r.words);
         for (const Ending& e : report.endings)
-            std::fprintf(csv, "%s,%zu,%zu,ends smooth,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f\n",
+            std::fprintf(csv, "%s,%zu,%zu,ends smooth,16,,,,,%.4f,,,%.3f,,,,,,%g,%.9g,%.5f,%.5f,\n",
                          report.name.c_str(), report.lights, report.views, e.total, e.evaluations,
                          evaluation_ns, e.part, e.difference.rmse, e.difference.rmse_restored);
     }
@@ -333,6 +339,14 @@ std::string sentence(const SceneReport& report) {
     if (std::ranges::any_of(report.results, [&](const Result& r) { return whole(r.way); }))
         s += "; cones instead of whole spheres save " +
              text("%.0f %%", 100 * (1 - best.total / report.best(whole).total));
+    for (const char* const masks : {"masks", "masks+z-bins"}) {
+        const auto of = [&](const char* method) -> const Result& {
+            return report.best([=](const Way& way) { return way.method == std::string_view(method); });
+        };
+        s += std::string("; ") + masks + " " + more(of(masks), of("plain")) + " to plain, " +
+             more(of(masks), report.best([](const Way& way) { return without_bounds(way) && !way.masks; })) +
+             " to the best lists without Z bounds";
+    }
     return s + report.advice;
 }
 

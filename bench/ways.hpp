@@ -28,6 +28,7 @@ struct Way {
     bool variant;       ///< of another, to tell what a part of it pays; in no table
     Form form;
     BuildLists build;
+    bool masks = false;
 };
 
 inline LightSet lights_of(const BenchScene& scene, Form form, std::uint32_t seed) {
@@ -52,6 +53,8 @@ public:
             ways.add<box>("box of least spheres", true, Form::least_spheres);
             ways.add<box>("box of whole spheres", true, Form::whole_spheres);
         }
+        ways.add_masks<Slicing::none>("masks");
+        ways.add_masks<Slicing::z_bins>("masks+z-bins");
         ways.add_flat_loop<false>("flat loop");
         ways.add_flat_loop<true>("flat loop+Z");
         return std::move(ways.all_);
@@ -65,6 +68,23 @@ private:
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
                 all_.push_back({method, tile_size, options.depth_test, options.slicing,
                                 options.depth_test && !clusters, true, variant, form, builder<options>()});
+    }
+
+    template <lightbin::Slicing slicing> void add_masks(const char* method) {
+        const auto binner = std::make_shared<lightbin::MaskBinner>();
+        const BuildLists build = [=](const TiledView& view, const LightSet& set) -> Built {
+            constexpr bool binned = slicing == lightbin::Slicing::z_bins;
+            const lightbin::LightMasks masks = std::visit(
+                [&](const auto& lights) {
+                    if constexpr (binned) return *binner->bin(view.view, lights, view.z_bins);
+                    return *binner->bin(view.view, lights);
+                },
+                set);
+            return {.bytes = masks.words().size_bytes(), .slices = binned ? &view.z_bins : nullptr, .masks = masks};
+        };
+        for (const int tile_size : {8, 16, 32, 64})
+            all_.push_back(
+                {method, tile_size, false, slicing, false, true, false, Form::as_they_are, build, true});
     }
 
     template <bool with_bounds> void add_flat_loop(const char* method) {

@@ -52,6 +52,7 @@ void set_samplers(GLuint program) {
     static constexpr std::pair<const char*, Unit> samplers[] = {
         {"lightbin_tiles", unit_tiles},
         {"lightbin_lists", unit_lists},
+        {"lightbin_masks", unit_lists},
         {"lightbin_slices", unit_slices},
         {"lightbin_bins", unit_bins},
         {"lights", unit_lights},

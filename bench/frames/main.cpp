@@ -56,7 +56,7 @@ int run(Arguments arguments) {
         run.width = !software ? 1920 : quick ? 240 : 480;
         run.height = run.width * 9 / 16;
         run.tile_size = run.width / 60;
-        run.timed_frames = only_counts ? 0 : software ? (quick ? 1 : 3) : quick ? 9 : 25;
+        run.timed_frames = only_counts ? 0 : software ? 3 : quick ? 9 : 25;
         std::printf(
             "OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d: a sixtieth of the width, as 32 are of 1920\n",
             reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width, run.height,
@@ -73,6 +73,7 @@ int run(Arguments arguments) {
     LeftOut left_out;
     const std::vector<Row> rows = draw_all(plan, run, left_out);
     print_rows(rows);
+    print_price_of_words(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())
         std::printf("%s\n", line.c_str());

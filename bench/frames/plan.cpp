@@ -80,6 +80,12 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
         add(random, "random lights", still, every_technique());
         plan.push_back(std::move(random));
     }
+    for (const int lights : {64, 256, 1000, 4000}) {
+        SceneJobs some{make_scene(lights), {}};
+        some.scene.name += ", " + std::to_string(lights) + " lights";
+        add(some, lists_and_masks, still, without_pre_pass());
+        plan.push_back(std::move(some));
+    }
     for (const std::string& file : files)
         add_file(plan, file, quick);
     return plan;

@@ -19,6 +19,9 @@ struct Job {
     std::vector<Light> lights = {};  ///< in place of the scene's, where there are any
 };
 
+/// The table of lists and masks by number of lights.
+inline constexpr const char* lists_and_masks = "lists and masks";
+
 struct SceneJobs {
     Scene scene;
     std::vector<Job> jobs;

@@ -2,6 +2,7 @@
 #include "report.hpp"
 
 #include "cases.hpp"
+#include "plan.hpp"
 
 #include "../console.hpp"
 
@@ -46,14 +47,35 @@ double millions(const Row& row) {
 double megabytes(const Row& row) {
     return static_cast<double>(row.bytes) * 1e-6;
 }
+double million_words(const Row& row) {
+    return static_cast<double>(row.words) * 1e-6;
+}
+double words_a_pixel(const Row& row) {
+    return static_cast<double>(row.words) / static_cast<double>(row.pixels);
+}
 double percent_different(const Row& row) {
     return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
 }
 
+/// The least time in which surfaces were drawn and lit, in milliseconds; 0 if their depth was drawn before.
+double shading(const Row& row) {
+    if (row.passes.empty() || row.passes.front().first != "bin") return 0;
+    return row.passes.back().second.least;
+}
+double sum(const std::vector<Row>& rows, double (*value)(const Row&)) {
+    double all = 0;
+    for (const Row& row : rows)
+        all += value(row);
+    return all;
+}
+
 /// A row a technique: means over the views, in brackets the least and the most. Of one view, those of its frames.
 std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
-    std::vector<TableRow> table = {{"", "ms", "million evaluations", "MB", "differs"}};
+    std::vector<TableRow> table = {{"", "ms", "million evaluations", "MB", "differs", "shading", "words"}};
+    double of_lists = 0;
     for (const auto& [name, views] : grouped(rows, &Row::technique)) {
+        const double its = sum(views, shading);
+        if (name == "TiledForward") of_lists = its;
         Spread ms = spread_of(views, milliseconds);
         if (views.size() == 1) ms = {ms.mean, views[0].frame.least, views[0].frame.most};
         const Spread evaluations = spread_of(views, millions),
@@ -65,7 +87,10 @@ std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
                  ? text("%9.3f (%8.3f /%8.3f)", evaluations.mean, evaluations.least, evaluations.most)
                  : "not counted",
              text("%8.1f", spread_of(views, megabytes).most),
-             different.most > 0 ? text("%6.2f %% by %.0f", different.most, by) : "nowhere"});
+             different.most > 0 ? text("%6.2f %% by %.0f", different.most, by) : "nowhere",
+             its > 0 && of_lists > 0 ? text("%5.2f", its / of_lists) : "",
+             views[0].words > 0 ? text("%6.2f", sum(views, words_a_pixel) / static_cast<double>(views.size()))
+                                : ""});
     }
     return table;
 }
@@ -86,17 +111,45 @@ void print_rows(const std::vector<Row>& rows) {
         std::printf("\n%s: %s\n", key.first.c_str(), key.second.c_str());
         print_table(by_technique(its));
     }
+    std::printf("\nshading: the time in which surfaces are drawn and lit, over TiledForward's. words: of masks, for a "
+                "pixel.\n");
+}
+
+void print_price_of_words(const std::vector<Row>& all) {
+    const auto of = [&](const char* technique) {
+        std::vector<Row> rows;
+        for (const Row& row : all)
+            if (row.table == lists_and_masks && row.technique == technique) rows.push_back(row);
+        return rows;
+    };
+    // From the fewest lights to the most a view has the same fragments, and nothing takes longer but the evaluations.
+    const std::vector<Row> lists = of("TiledForward");
+    double time = 0, evaluations = 0;
+    for (const auto& [view, by_lights] : grouped(lists, &Row::view)) {
+        time += shading(by_lights.back()) - shading(by_lights.front());
+        evaluations += millions(by_lights.back()) - millions(by_lights.front());
+    }
+    if (!(time > 0 && evaluations > 0)) return;
+    const double evaluation = time / evaluations;
+    const auto price = [&](const std::vector<Row>& of_lists, const std::vector<Row>& of_masks) {
+        return ((sum(of_masks, shading) - sum(of_lists, shading)) / evaluation -
+                (sum(of_masks, millions) - sum(of_lists, millions))) /
+               sum(of_masks, million_words);
+    };
+    std::printf("A word of masks takes as long as %.2f light evaluations, with z-bins as %.2f.\n",
+                price(lists, of("MaskedForward")), price(of("ZBinnedForward"), of("MaskedForward z-bins")));
 }
 
 void write_csv(const std::vector<Row>& rows) {
     std::FILE* const file =
         open_report("frames.csv", "table,scene,view,lights,technique,evaluations,ms,least_ms,most_ms,"
-                                  "bytes,pixels,different_pixels,largest_difference,passes");
+                                  "bytes,pixels,different_pixels,largest_difference,words,passes");
     for (const Row& row : rows) {
-        std::fprintf(file, "%s,%s,%s,%zu,%s,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,", row.table.c_str(),
+        std::fprintf(file, "%s,%s,%s,%zu,%s,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,%llu,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
                      static_cast<unsigned long long>(row.evaluations), row.frame.median, row.frame.least,
-                     row.frame.most, row.bytes, row.pixels, row.different, row.difference);
+                     row.frame.most, row.bytes, row.pixels, row.different, row.difference,
+                     static_cast<unsigned long long>(row.words));
         for (const auto& [pass, times] : row.passes)
             std::fprintf(file, "%s%s %.3f (%.3f to %.3f)", &pass == &row.passes.front().first ? "" : "; ",
                          pass.c_str(), times.median, times.least, times.most);

@@ -22,7 +22,7 @@ struct Times {
 struct Row {
     std::string table, scene, view, technique;  ///< a technique's name has the bits of its G-buffer
     std::size_t lights = 0;
-    std::uint64_t evaluations = 0;  ///< 0: this OpenGL can't count
+    std::uint64_t evaluations = 0, words = 0;  ///< 0: this OpenGL can't count
     Times frame;
     std::vector<std::pair<std::string, Times>> passes;
     std::size_t bytes = 0;

@@ -43,7 +43,7 @@ vec3 shown(vec3 radiance) {
 const char* const lighting = R"(
 uniform samplerBuffer lights;  // two texels each: centre and range, intensity
 
-uint evaluations = 0u;
+uint evaluations = 0u, words = 0u;
 
 // Diffuse and specular.
 vec3 reflected(Surface s, vec3 to_light, vec3 to_eye) {
@@ -70,7 +70,11 @@ vec3 from_light(Surface s, int id) {
 const char* const lit_by_list = R"(
 vec3 lit(Surface s, uvec2 pixel) {
     vec3 radiance = s.ambient;
-    each_light(light, pixel, -s.position.z) radiance += from_light(s, LIGHT_ID);
+    each_light(light, pixel, -s.position.z) radiance += from_light(s, int(light.id));
+#if defined(COUNT) && defined(MASKS)
+    lightbin_cursor masks = lightbin_begin(pixel, -s.position.z);
+    words += masks.end - masks.at;
+#endif
     return radiance;
 }
 )";
@@ -78,10 +82,14 @@ vec3 lit(Surface s, uvec2 pixel) {
 // Where early tests are not asked for, a shader that writes runs on what is hidden as well.
 const char* const counter = R"(
 #ifdef COUNT
-layout(std430, binding = 7) buffer Counter { uint low, high; } counter;
+layout(std430, binding = 7) buffer Counter { uvec2 sums[2]; } counter;  // low word, high word
+void count(int place, uint number) {
+    uint before = atomicAdd(counter.sums[place].x, number);
+    if (before + number < before) atomicAdd(counter.sums[place].y, 1u);
+}
 void count() {
-    uint before = atomicAdd(counter.low, evaluations);
-    if (before + evaluations < before) atomicAdd(counter.high, 1u);
+    count(0, evaluations);
+    count(1, words);
 }
 #else
 void count() {}
@@ -125,14 +133,6 @@ Surface stored_surface(ivec2 pixel, float depth) {
 }
 )";
 
-const char* const lit_pixel = R"(
-vec3 lit_pixel(ivec2 pixel) {
-    float depth = stored_depth(pixel);
-    if (depth == 1.0) return sky;
-    return shown(lit(stored_surface(pixel, depth), uvec2(pixel)));
-}
-)";
-
 }  // namespace
 
 LightLookup every_light() {
@@ -146,7 +146,8 @@ LightLookup listed_lights(const lightbin::ShaderOptions& options) {
     lightbin::ShaderOptions read = options;
     read.language = lightbin::ShaderLanguage::glsl_330;
     read.storage = lightbin::ListStorage::texel_buffer;
-    return {lightbin::shader_snippet(read)->text + "\n#define each_light lightbin_for_each_light\n"};
+    return {lightbin::shader_snippet(read)->text + "\n#define each_light lightbin_for_each_light\n" +
+            (options.masks ? "#define MASKS\n" : "")};
 }
 
 std::string Shaders::head() const {
@@ -163,7 +164,7 @@ layout(early_fragment_tests) in;
 )";
 
 std::string lit_text(const LightLookup& lights) {
-    return "#define LIGHT_ID " + lights.id + "\n" + common + lights.text + lighting + counter;
+    return common + lights.text + lighting + counter;
 }
 
 }  // namespace
@@ -221,16 +222,15 @@ void main() {
 )";
 }
 
-std::string Shaders::deferred_functions(const LightLookup& lights) const {
-    return lit_text(lights) + lit_by_list + stored_surface + lit_pixel;
-}
-
 std::string Shaders::deferred_fragment(const LightLookup& lights) const {
-    return head() + deferred_functions(lights) + R"(
+    return head() + lit_text(lights) + lit_by_list + stored_surface + R"(
 out vec4 pixel;
 
 void main() {
-    pixel = vec4(lit_pixel(ivec2(gl_FragCoord.xy)), 1.0);
+    ivec2 place = ivec2(gl_FragCoord.xy);
+    float depth = stored_depth(place);
+    pixel = vec4(sky, 1.0);
+    if (depth != 1.0) pixel.rgb = shown(lit(stored_surface(place, depth), uvec2(place)));
     count();
 }
 )";

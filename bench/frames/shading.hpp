@@ -10,9 +10,8 @@
 
 /// How a technique's shaders find the lights of a surface.
 struct LightLookup {
-    /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id.
+    /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id; of masks also MASKS.
     std::string text;
-    std::string id = "int(light.id)";  ///< of the light in the frame's array
 };
 LightLookup every_light();
 LightLookup listed_lights(const lightbin::ShaderOptions& options = {});
@@ -33,8 +32,6 @@ public:
     std::string g_buffer_fragment() const;
     /// Lights a pixel of the G-buffer.
     std::string deferred_fragment(const LightLookup& lights) const;
-    /// The same of a compute shader: declares vec3 lit_pixel(ivec2 pixel).
-    std::string deferred_functions(const LightLookup& lights) const;
 
     /// One light after another, added up in radiance_texture: the ambient light, one light, and what is shown.
     std::string ambient_fragment() const;
@@ -44,9 +41,9 @@ public:
     std::string rectangle_vertex() const;
     std::string ball_vertex() const;
 
+private:
     std::string head() const;  ///< the version, and what the settings say
 
-private:
     int glsl_;
     Settings settings_;
 };

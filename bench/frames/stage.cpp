@@ -76,7 +76,7 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
     glBufferData(GL_UNIFORM_BUFFER, sizeof constants, &constants, GL_STREAM_DRAW);
     if (settings.count) {
         if (glsl_ < 430) throw std::runtime_error("counting evaluations needs OpenGL 4.3");
-        const std::uint32_t zero[2] = {};
+        const std::uint64_t zero[2] = {};
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, counter_);
         glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, zero, GL_DYNAMIC_READ);
     }
@@ -120,12 +120,12 @@ std::vector<Pass> Stage::end() {
     return passes;
 }
 
-std::uint64_t Stage::evaluations() const {
-    std::uint32_t words[2] = {};
+std::uint64_t Stage::counted(std::size_t place) const {
+    std::uint32_t words[4] = {};
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, counter_);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
-    return (std::uint64_t{words[1]} << 32) + words[0];
+    return (std::uint64_t{words[2 * place + 1]} << 32) + words[2 * place];
 }
 
 lightbin::View Stage::view(int tile_size) const {
@@ -165,12 +165,6 @@ GLuint Stage::set(GLuint program) const {
 GLuint Stage::use(const std::string& vertex, const std::string& fragment) {
     GLuint& made = programs_[vertex + fragment];
     if (made == 0) set_samplers(made = link_program(vertex, fragment));
-    return set(made);
-}
-
-GLuint Stage::use_compute(const std::string& text) {
-    GLuint& made = programs_[text];
-    if (made == 0) set_samplers(made = link_compute_program(text));
     return set(made);
 }
 

@@ -56,7 +56,9 @@ public:
     void lap(const char* pass);
     /// Waits for the frame. Returns its passes, those of one name as one.
     std::vector<Pass> end();
-    std::uint64_t evaluations() const;  ///< if they were counted
+    /// If they were counted: light evaluations, and words of masks that fragments went through.
+    std::uint64_t evaluations() const { return counted(0); }
+    std::uint64_t words() const { return counted(1); }
 
     int glsl() const { return glsl_; }
     const Settings& settings() const { return settings_; }
@@ -71,7 +73,6 @@ public:
 
     /// Makes a program, once, and takes it into use. It reads the frame's view and its own units.
     GLuint use(const std::string& vertex, const std::string& fragment);
-    GLuint use_compute(const std::string& text);
 
     /// Targets of the frame's size.
     GLuint target(const char* name, GLenum format);
@@ -81,6 +82,7 @@ public:
 
 private:
     GLuint set(GLuint program) const;
+    std::uint64_t counted(std::size_t place) const;
 
     const Scene& scene_;
     int glsl_;

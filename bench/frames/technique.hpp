@@ -14,7 +14,6 @@ struct Technique {
     std::function<void(Stage&)> draw;
     int tolerance = 0;      ///< by which a colour may differ from the reference's, of 255
     int g_buffer_bits = 0;  ///< a component; 0: it has no G-buffer
-    int glsl = 330;         ///< the version that it needs at least
 };
 
 Technique forward_every_light();  ///< the reference
@@ -24,14 +23,16 @@ enum class ZEnds { none, min, max, both };
 Technique tiled_forward_pre_z(ZEnds ends);
 Technique tiled_forward_box();  ///< both, and the library's box test
 
-Technique tiled_deferred(int g_buffer_bits);         ///< the grid made on the CPU
-Technique tiled_deferred_planes(int g_buffer_bits);  ///< in the kernel that shades, as the paper has it
+Technique tiled_deferred(int g_buffer_bits);
 Technique deferred(int g_buffer_bits);
 Technique deferred_stencil(int g_buffer_bits);
 
 Technique light_indexed(int id_bits);
 Technique clustered_forward();
 Technique z_binned_forward();
+Technique masked_forward(lightbin::Slicing slicing);  ///< none, z_bins
 
+/// Plain tiles, and what needs no depth before it shades either.
+std::vector<Technique> without_pre_pass();
 /// All that draw opaque surfaces, but the reference.
 std::vector<Technique> every_technique();

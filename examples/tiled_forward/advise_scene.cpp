@@ -54,6 +54,7 @@ std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const
                          true});
     };
     for (const Verdict& verdict : advice.verdicts(way.plan)) {
+        if (verdict.part == "masks") continue;  // see WayCosts::advise()
         Part part = {verdict, way};
         const auto take = [&](const lightbin::Plan& plan) {
             part.other.plan = plan;

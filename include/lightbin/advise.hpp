@@ -19,6 +19,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 struct Costs {
     /// The time to evaluate one light at one pixel: about 1 on a CPU core, and 0.005 to 0.05 on a whole, parallel GPU.
     double evaluation_ns = 0.02;
+    /// The time to look at one word of masks, in light evaluations: about 1 with a plain shader on Mesa's software
+    /// renderer. The longer a material takes for a light, the less it is.
+    double word_evaluations = 1;
     /// The time of the depth pre-pass and its reduction to each tile's Z bounds; 0 if the renderer does both anyway.
     double z_bounds_ns = 0;
     /// The time to move one byte of the lists to where the shader reads it: 0.1 at 10 GB/s.
@@ -29,18 +32,23 @@ struct Costs {
 };
 
 /// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
-/// View::with_tile_size() the tile size.
+/// View::with_tile_size() the tile size. A plan with masks is for a MaskBinner, which is given the slices if `slicing` is
+/// z_bins; the Binner of its options makes lists of the same lights.
 struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light; `depth_test` to `tile_size` mean nothing
     bool depth_test = false;
     Slicing slicing = Slicing::none;  ///< values other than `none` need the slices given to advise_slices()
+    bool masks = false;               ///< masks of columns and rows, which a MaskBinner makes, in place of lists
     int tile_size = 0;
     double build_ns = 0;        ///< the time to build the lists, plus Costs::z_bounds_ns if the plan has Z bounds
     double upload_ns = 0;       ///< the time to move the lists to where the shader reads them
-    std::uint64_t entries = 0;  ///< the length of the light index list
+    std::uint64_t entries = 0;  ///< the length of the light index list, or of LightMasks::words()
     /// The list lengths summed over all pixels with something to light; without Z bounds multiplied by Costs::overdraw.
     double evaluations = 0;
-    double total_ns = 0;  ///< the time of a frame: build_ns + upload_ns + evaluations * Costs::evaluation_ns
+    double words = 0;  ///< the words of masks that all these pixels look at; multiplied like `evaluations`
+    /// The time of a frame:
+    /// build_ns + upload_ns + (evaluations + words * Costs::word_evaluations) * Costs::evaluation_ns
+    double total_ns = 0;
 
     bool has_z_bounds() const { return tiled && depth_test && slicing != Slicing::clusters; }
 };
@@ -49,13 +57,14 @@ struct Plan {
 inline std::string to_string(const Plan& plan) {
     if (!plan.tiled) return "every light in every pixel";
     std::string words = std::to_string(plan.tile_size) + " px";
+    if (plan.masks) words += ", masks";
     if (plan.depth_test) words += ", depth test";
     if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
     return words;
 }
 
-/// What one technique saves or costs in a plan that verdicts() judges. Techniques are tiles, a depth pre-pass,
-/// the depth test, Slicing::clusters and Slicing::z_bins.
+/// What one technique saves or costs in a plan that verdicts() judges. Techniques are tiles, masks, a depth
+/// pre-pass, the depth test, Slicing::clusters and Slicing::z_bins.
 struct Verdict {
     std::string part;     ///< the technique's name, such as "clusters"
     bool keep = false;    ///< whether the judged plan uses the technique that `part` names
@@ -117,8 +126,8 @@ template <Options base = Options{}, class Visit>
 decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 
 /// Measures what each way to light a view costs: without tiles; and with tiles of the view's tile size, of 2, 4 and 8
-/// times that size, and of one tile as large as the screen, each without and, if there are `bounds`, with the
-/// depth test. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
+/// times that size, and of one tile as large as the screen, each by masks and by lists without and, if there are
+/// `bounds`, with the depth test. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
 /// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
@@ -148,8 +157,8 @@ struct WeighedSlices {
     const Slices& z_bins;    ///< typically some hundreds
 };
 
-/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles; tiles with
-/// z-bins; clusters without and with the depth test. The tile sizes are those of advise(). Each depth
+/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles, and tiles with
+/// z-bins, by lists and by masks; clusters without and with the depth test. The tile sizes are those of advise(). Each depth
 /// sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part between
 /// the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors:
 /// those of Binner::bin(), and fewer depths than samples.size says.

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <limits>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,7 +80,10 @@ Advice checked(const Result<Advice>& advice, const Costs& costs) {
         const bool bounded = plan.depth_test && plan.slicing == Slicing::none;
         CHECK(plan.build_ns >= (bounded ? costs.z_bounds_ns : 0));
         CHECK(plan.build_ns < 1e12);
-        CHECK(plan.total_ns == plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns);
+        CHECK(plan.total_ns ==
+              plan.build_ns + plan.upload_ns +
+                  (plan.evaluations + plan.words * costs.word_evaluations) * costs.evaluation_ns);
+        if (!plan.masks) CHECK(plan.words == 0);
         CHECK(plan.total_ns >= before);
         before = plan.total_ns;
         if (!plan.tiled) CHECK(plan.build_ns == 0);
@@ -198,7 +202,7 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
                     depths[static_cast<std::size_t>((y * step + step / 2) * 311 + x * step + step / 2)]);
         const Advice advice =
             advised_in_slices(of_samples, lights, {.depths = samples, .size = size}, {.z_bounds_ns = 0});
-        CHECK(advice.plans().size() == 5 * 4 + 1);
+        CHECK(advice.plans().size() == 5 * 6 + 1);
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(static_cast<int>(plan.slicing));
@@ -223,7 +227,24 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
                 const auto grid = binner.bin(*of_samples.with_tile_size(plan.tile_size), lights,
                                              inputs_for<options>({}, slices));
                 REQUIRE(grid);
-                CHECK(plan.entries == grid->ids().size());
+                if (plan.masks) {
+                    MaskBinner mask_binner;
+                    const View tiled = *of_samples.with_tile_size(plan.tile_size);
+                    const bool binned = plan.slicing == Slicing::z_bins;
+                    const LightMasks masks =
+                        *(binned ? mask_binner.bin(tiled, lights, hundred) : mask_binner.bin(tiled, lights));
+                    CHECK(plan.entries == masks.words().size());
+                    CHECK(plan.words == evaluations([&](int, int, float depth) {
+                              if (!binned) return std::size_t{masks.mask_words()};
+                              const BinRange bin = masks.bins()[static_cast<std::size_t>(hundred.slice_at(depth))];
+                              std::set<std::size_t> words = {bin.least / 32};
+                              for (std::size_t rank = bin.least; rank <= bin.greatest; ++rank)
+                                  words.insert(rank / 32);
+                              return words.size();
+                          }));
+                } else {
+                    CHECK(plan.entries == grid->ids().size());
+                }
                 CHECK(plan.evaluations == evaluations([&](int x, int y, float depth) {
                           return lights_at<options>(*grid, slices, x, y, depth);
                       }));
@@ -251,12 +272,12 @@ TEST_CASE("entries and evaluations are those of the plans' grids") {
                 continue;
             }
             const test::Lists lists = lists_of(plan, view, lights, depth);
-            CHECK(plan.entries == test::entries(lists));
+            if (!plan.masks) CHECK(plan.entries == test::entries(lists));
             CHECK(plan.evaluations == evaluations_of(plan, lists, view, drawn));
             ++tiled;
         }
         // Tiles of 8, 16, 32, 64 and 611 pixels.
-        CHECK(tiled == (with_depth ? 10 : 5));
+        CHECK(tiled == (with_depth ? 15 : 10));  // masks, lists, lists of a depth test
         CHECK(advice.plans().size() == tiled + 1);
     }
 }
@@ -321,7 +342,7 @@ TEST_CASE("only what the Z bounds allow is weighed") {
             if (max) given.max = bounds.max;
             const Advice advice = advised(view, lights, {}, given);
             CHECK(std::ranges::count(advice.plans(), true, &Plan::depth_test) == (min || max ? 5 : 0));
-            CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 1);
+            CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 5 + 1);
         }
 }
 
@@ -364,6 +385,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
             const bool bounded = plan.depth_test && plan.slicing == Slicing::none;
             CHECK(plan.has_z_bounds() == bounded);
             CHECK(same->evaluations == plan.evaluations * (bounded ? 1 : 2.5));
+            CHECK(same->words == plan.words * 2.5);
             CHECK(plan.build_ns == (plan.tiled ? 100 : 0) + (bounded ? 3 : 0));
             CHECK(same->build_ns == plan.build_ns);
             CHECK(plan.upload_ns == 0);
@@ -372,6 +394,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
     };
     const auto tiles = [&](const Plan& plan) { return street.view.with_tile_size(plan.tile_size)->tile_count(); };
     compare(advised_on(each_100, street, plain), advised_on(each_100, street, dear), [&](const Plan& plan) {
+        if (plan.masks) return 4 * std::size_t{plan.entries};
         return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
     });
     const std::size_t in_view = [&] {
@@ -381,6 +404,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
     const Advice without = advised_in_slices_of(street, plain), with = advised_in_slices_of(street, dear);
     compare(without, with, [&](const Plan& plan) -> std::size_t {
         if (!plan.tiled) return 0;
+        if (plan.masks) return 4 * std::size_t{plan.entries};
         const std::size_t slices = plan.slicing == Slicing::clusters ? 12 : 1,
                           ranks = plan.slicing == Slicing::z_bins ? 8 * 100 + 4 * in_view : 0;
         return 8 * tiles(plan) * slices + 2 * std::size_t{plan.entries} + ranks;
@@ -394,10 +418,11 @@ std::vector<bool> techniques_of(const Plan& plan) {
     const std::string words = "," + to_string(plan) + ",";
     const auto says = [&](const char* word) { return words.find(word) != words.npos; };
     const bool tested = says(" depth test,"), sliced = says(" clusters,");
-    return {says(" px,"), tested && !sliced, tested, sliced, says(" z_bins,")};
+    return {says(" px,"), says(" masks,"), tested && !sliced, tested, sliced, says(" z_bins,")};
 }
 
-constexpr const char* padded[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ", "z-bins       "};
+constexpr const char* padded[] = {"tiles        ", "masks        ", "pre-pass     ",
+                                  "depth test   ", "clusters     ", "z-bins       "};
 
 /// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's.
 void check_verdicts(const Advice& advice) {
@@ -450,6 +475,7 @@ TEST_CASE("a verdict on each technique tells the cheapest plan that differs in i
         for (int i = 1 + round % 8; i > 0; --i) {
             Plan plan = {.tiled = random() % 8 != 0, .depth_test = random() % 2 != 0, .tile_size = 8};
             plan.slicing = static_cast<Slicing>(random() % 3);
+            plan.masks = random() % 2 != 0;
             plan.total_ns = static_cast<double>(random() % 3'000'000);
             plans.push_back(plan);
         }

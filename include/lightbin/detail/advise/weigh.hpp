@@ -4,7 +4,9 @@
 
 #include <lightbin/advise.hpp>
 #include <lightbin/binner.hpp>
+#include <lightbin/masks.hpp>
 
+#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
@@ -28,13 +30,14 @@ inline std::string to_string(const Verdict& verdict) {
 }
 
 LIGHTBIN_SMALL inline std::string Advice::text() const {
-    std::string lines = "   cost  tile  depth test  slicing      entries   build us  "
+    std::string lines = "   cost  tile  by     depth test  slicing      entries   build us  "
                         "M evaluations   total us\n";
     for (const Plan& plan : plans()) {
         char tile[16] = "-", line[160];
         if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
-        std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
+        std::snprintf(line, sizeof line, "%7.2f  %4s  %-5s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
                       plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
+                      !plan.tiled ? "-" : plan.masks ? "masks" : "lists",
                       !plan.tiled ? "no tiling" : plan.depth_test ? "yes" : "no",
                       plan.tiled ? to_string(plan.slicing) : "-",
                       static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
@@ -47,6 +50,7 @@ LIGHTBIN_SMALL inline std::string Advice::text() const {
 LIGHTBIN_SMALL inline std::vector<Verdict> Advice::verdicts(const Plan& plan) const {
     constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
         {"tiles", [](const Plan& p) { return p.tiled; }},
+        {"masks", [](const Plan& p) { return p.tiled && p.masks; }},
         {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
         {"depth test", [](const Plan& p) { return p.tiled && p.depth_test; }},
         {"clusters", [](const Plan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
@@ -181,12 +185,42 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
         return std::tuple<Binner<weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
+    MaskBinner mask_binner(base.isa);
+    // Does with masks what `build`, below, does with lists.
+    const auto build_masks = [&](Plan& plan, const View& grid, const auto& moved, bool first) -> std::optional<Error> {
+        const bool binned = plan.slicing == Slicing::z_bins;
+        const auto start = Clock::now();
+        const auto built = binned ? mask_binner.bin(grid, moved, slices.z_bins) : mask_binner.bin(grid, moved);
+        const std::chrono::duration<double, std::nano> time = Clock::now() - start;
+        if (!built) return built.error();
+        plan.build_ns = (std::min)(plan.build_ns, time.count());
+        if (!first) return std::nullopt;
+        plan.upload_ns = costs.upload_byte_ns * static_cast<double>(built->words().size_bytes());
+        plan.entries = built->words().size();
+        for_each_visible([&](int x, int y, float depth, double pixels) {
+            BinRange range = {0, 32 * built->mask_words() - 1};
+            if (binned) range = built->bins()[static_cast<std::size_t>(slices.z_bins.slice_at(depth))];
+            const auto column = built->column(x / plan.tile_size), row = built->row(y / plan.tile_size);
+            const std::uint32_t last = range.greatest / 32;  // a bin without lights is {1, 0}
+            for (std::uint32_t w = range.least / 32; w < column.size() && w <= last; ++w) {
+                std::uint32_t bits = column[w] & row[w];
+                if (w == range.least / 32) bits &= 0xffffffffu << range.least % 32;
+                if (w == last) bits &= 0xffffffffu >> (31 - range.greatest % 32);
+                plan.words += pixels;
+                plan.evaluations += pixels * std::popcount(bits);
+            }
+        });
+        plan.words *= costs.overdraw;
+        plan.evaluations *= costs.overdraw;
+        return std::nullopt;
+    };
     // Builds a plan's lists and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
     // first call also counts the list entries and how often pixels evaluate a light.
     const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)
             ++grid;
+        if (plan.masks) return build_masks(plan, grid->view, moved, first);
         const auto with = [&]<Options options>() -> std::optional<Error> {
             constexpr bool with_bounds =
                 options.depth_test && options.slicing == Slicing::none;
@@ -232,6 +266,10 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
                          .build_ns = HUGE_VAL};
             if (const auto error = build(plan, lights, true)) return *error;
             plans.push_back(plan);
+            if (options.depth_test || options.slicing == Slicing::clusters) continue;
+            plan = {.slicing = options.slicing, .masks = true, .tile_size = plan.tile_size, .build_ns = HUGE_VAL};
+            if (const auto error = build(plan, lights, true)) return *error;
+            plans.push_back(plan);
         }
 
     // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
@@ -243,7 +281,8 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     for (int turn = 0;; ++turn) {
         double least = HUGE_VAL;
         for (Plan& plan : plans) {
-            plan.total_ns = plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns;
+            plan.total_ns = plan.build_ns + plan.upload_ns +
+                            (plan.evaluations + plan.words * costs.word_evaluations) * costs.evaluation_ns;
             least = (std::min)(least, plan.total_ns);
         }
         if (turn == turns) return Advice(std::move(plans));
