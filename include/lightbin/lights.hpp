@@ -30,8 +30,8 @@ template <class Light, class ToLight> struct Lights {
             to[i] = made(array[first + i]);
     }
 
-    /// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
-    /// layout, so that kernels can read the array directly; else null.
+    /// Returns the caller's array if its elements have the memory layout of a Sphere, Spot or Box, so that kernels can
+    /// read it directly. Returns null if each element must be converted first.
     const void* as_they_are() const {
         if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
             return array.data();

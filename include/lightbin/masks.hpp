@@ -9,11 +9,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The lights in view, as a mask for each column of tiles and one for each row. A light is listed in a rectangle of
-/// tiles, so it is in tile (x, y) exactly if it is in column x and in row y: the lights of the tile are those whose
-/// bits are set in  column(x)[w] & row(y)[w].  Bit b of word w stands for the light ids()[32 w + b].
+/// Tells which lights are in which tiles by a bit mask for each column of tiles and one for each row, in which bit b of
+/// word w stands for the light ids()[32 w + b]. Each light covers a rectangle of tiles, so it is in tile (x, y) exactly if
+/// it is in column x and in row y: the lights of the tile are the bits of  column(x)[w] & row(y)[w]  for all w.
 ///
-/// It does not own its memory; the function that returns it says how long that is valid.
+/// A LightMasks points to memory of the MaskBinner that made it, see MaskBinner::bin().
 class LightMasks {
 public:
     LightMasks(int tiles_x, int tiles_y, std::span<const std::uint32_t> words, const LightCounts& counts,

@@ -150,7 +150,8 @@ inline lightbin_result read_member(std::int32_t given, Isa& known, const char* n
                ? result
                : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
-/// Reads the member of this name from `given` to `known`.
+/// Copies the member `name` of the caller's C struct `given` to the C++ struct `known`. Returns why its value is refused,
+/// or a success.
 #define LIGHTBIN_MEMBER(name) read_member(given.name, known.name, "options." #name)
 
 /// Returns the first of several results that is an error, or a success.
@@ -160,7 +161,7 @@ template <class... Results> lightbin_result first_error(const Results&... result
     return first;
 }
 
-/// A pointer that a call needs, and its name.
+/// An argument that must not be a null pointer, and its name for the error.
 struct Needed {
     const void* pointer;
     const char* name;

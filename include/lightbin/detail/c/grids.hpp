@@ -21,7 +21,7 @@ lightbin_result with_grid(const lightbin_grid* given, const char* name, const Bo
         result = check_pointers({{grid.ranges, "grid.ranges"}});
     if (result.error == LIGHTBIN_OK && grid.id_count > 0) result = check_pointers({{grid.ids, "grid.ids"}});
     const auto with = [&]<class Id>(const Id* ids) {
-        return call_if(result, [&] {
+        return call_if(succeeded(), [&] {
             const auto size = [](std::uint64_t count) { return static_cast<std::size_t>(count); };
             return body(LightGrid<Id>(
                 grid.tiles_x, grid.tiles_y, {same_layout<ListRange>(grid.ranges), size(grid.range_count)},

@@ -17,8 +17,8 @@ namespace c {
 /// What boxes that are given without a radius or a taper have in its place: one float for all of them.
 inline constexpr float unbounded = std::numeric_limits<float>::infinity(), untapered = 1;
 
-/// A member of a kind of lights: where the caller says that its floats are, how many each light has, and from which byte
-/// of a Sphere, Spot or Box on they are stored.
+/// Describes one property of a light, such as its centre: the member of the C struct that says where the caller's floats
+/// are, the number of floats of each light, and the byte of a C++ Sphere, Spot or Box from which on they are stored.
 template <class Given> struct Member {
     lightbin_floats Given::*floats;
     std::size_t each, offset;
@@ -76,10 +76,11 @@ template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
         return members[m - 1].each == 3 && members[m].each == 1;
 }();
 
-/// Reads the lights first..first + count - 1 of the caller's arrays. It is one loop for all members, as those of a light
-/// mostly lie side by side, in one line of the cache or two.
+/// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied before
+/// those of the next light, as they mostly lie side by side in memory.
 ///
-/// fours  each float that follows three in the engine's lights does so in the caller's memory: the four are read at once
+/// fours  whether each radius or other single float directly follows, in the caller's memory, the three floats that it
+///        follows in the C++ struct: then all four are copied at once
 template <bool fours, class Given>
 void read_lights(const Given& from, std::size_t first, std::size_t count, typename Kind<Given>::Made* to) {
     const Given arrays = from;  // a local copy, so that compilers need not reload it after each store

@@ -80,7 +80,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
              {textures && (options.texture_width < 1 || options.texture_width > 16384),
               {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
         return *error;
-    if (const auto error = refuse(format); error && !masks) return *error;
+    if (!masks)
+        if (const auto error = refuse(format)) return *error;
     // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
     const std::uint64_t limit =
         options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
