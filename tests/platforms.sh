@@ -81,7 +81,7 @@ try() {
     program=$1
     shift
     # shellcheck disable=SC2086  # several words
-    LIGHTBIN_TEST_SHARE=32 timeout 1200 $run "$folder/$program$exe" "$@" >"$folder/$program.log" 2>"$folder/$program.err" && code=0 || code=$?
+    timeout 1200 $run "$folder/$program$exe" "$@" >"$folder/$program.log" 2>"$folder/$program.err" && code=0 || code=$?
     tr -d '\r' <"$folder/$program.log" >"$folder/$program.txt"
     [ "$code" -eq 0 ] && return
     tail -n 15 "$folder/$program.txt" "$folder/$program.err" | cut -c 1-200
