@@ -116,24 +116,13 @@ template <class LightRange> void check(const View& view, const LightRange& light
     }
 }
 
-std::vector<View> cameras(int tile_size) {
-    const glm::mat4 flipped = glm::scale(glm::mat4(1), glm::vec3(1, 1, -1));
-    std::vector<View> all;
-    for (const glm::mat4& projection :
-         {glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 1000.0f), glm::frustumRH_NO(-0.2f, 0.05f, -0.1f, 0.3f, 0.25f, 500.0f),
-          glm::perspectiveRH_NO(1.0f, 1.5f, 2.0f, 60.0f) * flipped,
-          glm::orthoRH_NO(-30.0f, 50.0f, -20.0f, 25.0f, 1.0f, 80.0f)})
-        all.push_back(*View::from_projection(projection, {500, 330}, {.tile_size = tile_size}));
-    return all;
-}
-
 }  // namespace
 
 TEST_CASE("masks have the lights of the lists in every tile, of every kind, camera and tile size") {
     const Slices slices = *Slices::exponential(50, 1, 90);
     const glm::mat4 turned = glm::rotate(glm::translate(glm::mat4(1), {3, -2, 4}), 0.5f, {1.0f, 2.0f, 3.0f});
     for (const int tile_size : {8, 16, 31, 64})
-        for (const View& view : cameras(tile_size)) {
+        for (const View& view : test::cameras(tile_size)) {
             const std::uint32_t seed = static_cast<std::uint32_t>(tile_size);
             auto spheres = test::random_lights(400, seed);
             spheres[7].w = std::numeric_limits<float>::quiet_NaN();
