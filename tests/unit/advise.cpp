@@ -108,30 +108,12 @@ Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const Street& str
     return advised_on(build_ns, street.view, street.lights, costs, street.bounds.reduced);
 }
 
-/// The lists of a plan's grid, built by its Binner with bounds of its own tiles.
-test::Lists lists_of(const Plan& plan, const View& fine, const auto& lights,
-                     const std::vector<float>& depth) {
-    const View view = *fine.with_tile_size(plan.tile_size);
-    const Bounds bounds(view, depth);
-    return with_options(plan, [&]<Options options> {
-        CHECK(options.depth_test == plan.depth_test);
-        return test::lists<options>(view, lights, bounds.reduced);
-    });
-}
-
-/// Evaluations of the pixels in the fine tiles that have something to light, pixel by pixel.
-double evaluations_of(const Plan& plan, const test::Lists& lists, const View& fine, const ZBounds* bounds) {
+/// Returns the sum of lights_at(x, y) of each pixel.
+double evaluations(Extent size, const auto& lights_at) {
     std::size_t sum = 0;
-    const View view = *fine.with_tile_size(plan.tile_size);
-    const auto tile_of = [](const View& tiled, int x, int y) {
-        return static_cast<std::size_t>(y / tiled.tile_size() * tiled.tiles_x() + x / tiled.tile_size());
-    };
-    for (int y = 0; y < view.viewport().height; ++y)
-        for (int x = 0; x < view.viewport().width; ++x) {
-            const std::size_t tile = tile_of(fine, x, y);
-            if (bounds != nullptr && bounds->min[tile] > bounds->max[tile]) continue;
-            sum += lists[tile_of(view, x, y)].size();
-        }
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            sum += lights_at(x, y);
     return static_cast<double>(sum);
 }
 
@@ -202,19 +184,16 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(static_cast<int>(plan.slicing));
-            const auto evaluations = [&](auto lights_of) {
-                std::size_t sum = 0;
-                for (int y = 0; y < size.height; ++y)
-                    for (int x = 0; x < size.width; ++x) {
-                        const float depth = samples[static_cast<std::size_t>(y * size.width + x)];
-                        if (depth < unbounded)
-                            sum += lights_of((x * step + step / 2) / plan.tile_size,
-                                             (y * step + step / 2) / plan.tile_size, depth);
-                    }
-                return static_cast<double>(sum) * step * step;
+            const auto sampled = [&](auto lights_of) {
+                return step * step * evaluations(size, [&](int x, int y) {
+                           const float depth = samples[static_cast<std::size_t>(y * size.width + x)];
+                           return depth < unbounded
+                                      ? lights_of(x * step + step / 2, y * step + step / 2, depth)
+                                      : 0;
+                       });
             };
             if (!plan.tiled) {
-                CHECK(plan.evaluations == evaluations([](int, int, float) { return std::size_t{150}; }));
+                CHECK(plan.evaluations == sampled([](int, int, float) { return std::size_t{150}; }));
                 continue;
             }
             with_sliced_options(plan, [&]<Options options> {
@@ -224,8 +203,9 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
                                              inputs_for<options>({}, slices));
                 REQUIRE(grid);
                 CHECK(plan.entries == grid->ids().size());
-                CHECK(plan.evaluations == evaluations([&](int x, int y, float depth) {
-                          return lights_at<options>(*grid, slices, x, y, depth);
+                CHECK(plan.evaluations == sampled([&](int x, int y, float depth) {
+                          return lights_at<options>(*grid, slices, x / plan.tile_size, y / plan.tile_size,
+                                                    depth);
                       }));
             });
         }
@@ -243,17 +223,24 @@ TEST_CASE("entries and evaluations are those of the plans' grids") {
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(plan.depth_test);
-            const ZBounds* drawn = with_depth ? &bounds.reduced : nullptr;
-            if (!plan.tiled) {
-                CHECK(plan.entries == 0);
-                const test::Lists all = {std::vector<std::uint32_t>(150)};
-                CHECK(plan.evaluations == evaluations_of({.tile_size = 611}, all, view, drawn));
-                continue;
-            }
-            const test::Lists lists = lists_of(plan, view, lights, depth);
-            CHECK(plan.entries == test::entries(lists));
-            CHECK(plan.evaluations == evaluations_of(plan, lists, view, drawn));
-            ++tiled;
+            const View own = *view.with_tile_size(plan.tiled ? plan.tile_size : 611);
+            const Bounds of_own_tiles(own, depth);
+            const test::Lists lists =
+                plan.tiled ? with_options(plan,
+                                          [&]<Options options> {
+                                              return test::lists<options>(own, lights, of_own_tiles.reduced);
+                                          })
+                           : test::Lists{std::vector<std::uint32_t>(150)};
+            CHECK(plan.entries == (plan.tiled ? test::entries(lists) : 0));
+            const auto tile_of = [](const View& of, int x, int y) {
+                return static_cast<std::size_t>(y / of.tile_size() * of.tiles_x() + x / of.tile_size());
+            };
+            CHECK(plan.evaluations == evaluations({611, 397}, [&](int x, int y) {
+                      const std::size_t fine = tile_of(view, x, y);
+                      const bool nothing = with_depth && bounds.min[fine] > bounds.max[fine];
+                      return nothing ? 0 : lists[tile_of(own, x, y)].size();
+                  }));
+            tiled += plan.tiled;
         }
         // Tiles of 8, 16, 32, 64 and 611 pixels.
         CHECK(tiled == (with_depth ? 10 : 5));
@@ -370,7 +357,9 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
             CHECK(same->upload_ns == 16 * static_cast<double>(bytes_of(plan)));
         }
     };
-    const auto tiles = [&](const Plan& plan) { return street.view.with_tile_size(plan.tile_size)->tile_count(); };
+    const auto tiles = [&](const Plan& plan) {
+        return street.view.with_tile_size(plan.tile_size)->tile_count();
+    };
     compare(advised_on(each_100, street, plain), advised_on(each_100, street, dear), [&](const Plan& plan) {
         return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
     });
@@ -397,7 +386,8 @@ std::vector<bool> techniques_of(const Plan& plan) {
     return {says(" px,"), tested && !sliced, tested, sliced, says(" z_bins,")};
 }
 
-constexpr const char* padded[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ", "z-bins       "};
+constexpr const char* padded[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ",
+                                  "z-bins       "};
 
 /// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's.
 void check_verdicts(const Advice& advice) {
@@ -481,8 +471,8 @@ TEST_CASE("any input") {
     const View view = test::view({1000, 700}, 32);
     const std::vector<float> few(view.tile_count() - 1);
     CHECK(advise(view, bad, {}, {.max = few}).error().code == ErrorCode::z_bounds_too_small);
-    const auto too_few =
-        advise_slices(view, bad, {.clusters = a_dozen, .z_bins = hundred}, {.depths = depths, .size = {3, 3}});
+    const auto too_few = advise_slices(view, bad, {.clusters = a_dozen, .z_bins = hundred},
+                                       {.depths = depths, .size = {3, 3}});
     CHECK(too_few.error().code == ErrorCode::depth_buffer_too_small);
     const float projective[4][4] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {5, 0, 0, 1}};
     CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
