@@ -212,39 +212,42 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
     }
 }
 
-TEST_CASE("entries and evaluations are those of the plans' grids") {
+TEST_CASE("entries and evaluations are those of the plans' grids, of as many sides of Z bounds as there are") {
     const View view = test::view({611, 397}, 8);
     const std::vector<float> depth = ground_depth({611, 397});
     const Bounds bounds(view, depth);
     const auto lights = test::random_lights(150, 7);
-    for (const bool with_depth : {false, true}) {
-        const Advice advice = advised(view, lights, {}, with_depth ? bounds.reduced : ZBounds{});
-        std::size_t tiled = 0;
+    const auto tile_of = [](const View& of, int x, int y) {
+        return static_cast<std::size_t>(y / of.tile_size() * of.tiles_x() + x / of.tile_size());
+    };
+    for (const int sides : {0, 1, 2, 3}) {
+        const auto sides_of = [&](const Bounds& all) {
+            ZBounds given;
+            if ((sides & 1) != 0) given.min = all.min;
+            if ((sides & 2) != 0) given.max = all.max;
+            return given;
+        };
+        const Advice advice = advised(view, lights, {}, sides_of(bounds));
+        // Tiles of 8, 16, 32, 64 and 611 pixels.
+        CHECK(std::ranges::count(advice.plans(), true, &Plan::depth_test) == (sides > 0 ? 5 : 0));
+        CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 1);
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(plan.depth_test);
             const View own = *view.with_tile_size(plan.tiled ? plan.tile_size : 611);
             const Bounds of_own_tiles(own, depth);
-            const test::Lists lists =
-                plan.tiled ? with_options(plan,
-                                          [&]<Options options> {
-                                              return test::lists<options>(own, lights, of_own_tiles.reduced);
-                                          })
-                           : test::Lists{std::vector<std::uint32_t>(150)};
+            test::Lists lists = {std::vector<std::uint32_t>(150)};
+            if (plan.tiled)
+                lists = with_options(plan, [&]<Options options> {
+                    return test::lists<options>(own, lights, sides_of(of_own_tiles));
+                });
             CHECK(plan.entries == (plan.tiled ? test::entries(lists) : 0));
-            const auto tile_of = [](const View& of, int x, int y) {
-                return static_cast<std::size_t>(y / of.tile_size() * of.tiles_x() + x / of.tile_size());
-            };
             CHECK(plan.evaluations == evaluations({611, 397}, [&](int x, int y) {
                       const std::size_t fine = tile_of(view, x, y);
-                      const bool nothing = with_depth && bounds.min[fine] > bounds.max[fine];
+                      const bool nothing = sides == 3 && bounds.min[fine] > bounds.max[fine];
                       return nothing ? 0 : lists[tile_of(own, x, y)].size();
                   }));
-            tiled += plan.tiled;
         }
-        // Tiles of 8, 16, 32, 64 and 611 pixels.
-        CHECK(tiled == (with_depth ? 10 : 5));
-        CHECK(advice.plans().size() == tiled + 1);
     }
 }
 
@@ -295,21 +298,6 @@ TEST_CASE("builds that are disturbed change nothing") {
         CHECK(noisy.tile_size == quiet.tile_size);
         CHECK(noisy.total_ns == quiet.total_ns);
     }
-}
-
-TEST_CASE("only what the Z bounds allow is weighed") {
-    const View view = test::view({640, 360}, 8);
-    const auto lights = test::random_lights(50, 3);
-    const Bounds bounds(view, ground_depth({640, 360}));
-    for (const bool min : {false, true})
-        for (const bool max : {false, true}) {
-            ZBounds given;
-            if (min) given.min = bounds.min;
-            if (max) given.max = bounds.max;
-            const Advice advice = advised(view, lights, {}, given);
-            CHECK(std::ranges::count(advice.plans(), true, &Plan::depth_test) == (min || max ? 5 : 0));
-            CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 1);
-        }
 }
 
 TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
@@ -386,15 +374,13 @@ std::vector<bool> techniques_of(const Plan& plan) {
     return {says(" px,"), tested && !sliced, tested, sliced, says(" z_bins,")};
 }
 
-constexpr const char* padded[] = {"tiles        ", "pre-pass     ", "depth test   ", "clusters     ",
-                                  "z-bins       "};
-
-/// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's.
+/// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's,
+/// whose form is tested in tests/gl/advise.sh.
 void check_verdicts(const Advice& advice) {
     for (const Plan& plan : advice.plans()) {
         std::string lines;
         const std::vector<Verdict> verdicts = advice.verdicts(plan);
-        REQUIRE(verdicts.size() == std::size(padded));
+        REQUIRE(verdicts.size() == 5);
         for (std::size_t i = 0; i < verdicts.size(); ++i) {
             const auto& [part, keep, other, instead, saved_ns] = verdicts[i];
             double least = HUGE_VAL;
@@ -408,15 +394,9 @@ void check_verdicts(const Advice& advice) {
             if (weighed) CHECK(other.total_ns == least);
             if (weighed) CHECK(saved_ns == least - plan.total_ns);
             const std::string line = to_string(verdicts[i]);
-            const std::string kept[] = {"keep: no other was weighed", "keep: saves ", "keep: costs only "},
-                              left_out[] = {"leave out: was not weighed", "leave out: would cost ",
-                                            "leave out: would save only "};
-            const std::string& says = (keep ? kept : left_out)[!weighed ? 0 : saved_ns >= 0 ? 1 : 2];
-            CHECK(padded[i] == part + std::string(13 - part.size(), ' '));
-            CHECK(line.starts_with(padded[i] + says));
+            CHECK(line.find(keep ? "keep: " : "leave out: ") == 13);
             CHECK(line.ends_with(weighed ? " instead: " + instead + "\n" : "weighed\n"));
-            CHECK(line.find(" -") == line.npos);
-            CHECK(line.size() <= 100);
+            CHECK((line.find(" only ") != line.npos) == (weighed && saved_ns < 0));
             lines += line;
         }
         if (&plan != &advice.best()) continue;

@@ -61,13 +61,6 @@ TEST_CASE("an empty viewport") {
         CHECK(grid->light_counts().rejected == 1);
         CHECK(grid->light_counts().culled == 201);
 
-        // Projected in several parts, and binned by the kernel that scatters.
-        Binner<Options{.isa = Isa::scalar}> shared;
-        const auto none =
-            shared.bin(view, test::random_lights(1000, 43), {}, Parallel(3, test::backwards));
-        REQUIRE(none);
-        CHECK(none->ids().empty());
-
         Binner<Options{.depth_test = true}> pruned;
         const auto bounds = reduce_depth(view, {}, {});
         REQUIRE(bounds);
