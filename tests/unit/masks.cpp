@@ -2,7 +2,6 @@
 // bins.
 #include "scene.hpp"
 
-#include <lightbin/coverage.hpp>
 #include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
 
@@ -154,37 +153,17 @@ TEST_CASE("masks have the lights of the lists where words, and the sums of sever
     }
 }
 
+// Where there are the most of both, tests/oracle/families.cpp proves them.
 TEST_CASE("masks have the lights of the lists where there are many columns or rows") {
     const auto spheres = test::random_lights(70, 5);
     const test::Kinds kinds = test::random_kinds(20, 20, 20, 6);
     const Slices slices = *Slices::linear(20, 0, 80);
     for (const Extent size :
          {Extent{255, 254}, {256, 255}, {257, 300}, {1000, 40}, {40, 1000}, {32768, 3}, {3, 32768}}) {
+        check(test::view(size, 1), std::vector<Sphere>{{0, 0, -5, HUGE_VALF}}, slices);
         check(test::view(size, 1), spheres, slices);
         check(test::view(size, 1), lights(kinds.spheres, kinds.spots, kinds.boxes), slices);
     }
-}
-
-TEST_CASE("masks of the most columns and rows are the rectangles of the lights") {
-    const View view = test::view({32768, 32768}, 1);
-    auto spheres = test::random_lights(100, 9);
-    spheres[3].w = std::numeric_limits<float>::infinity();
-    const auto covered = *coverage(view, spheres);
-    MaskBinner binner;
-    const auto masks = binner.bin(view, spheres);
-    REQUIRE(masks);
-    check_words(*masks);
-    REQUIRE(masks->ids().size() == covered.size());
-    std::size_t wrong = 0;
-    for (std::size_t i = 0; i < covered.size(); ++i) {
-        CHECK(masks->ids()[i] == covered[i].id);
-        const auto has = [&](std::span<const std::uint32_t> mask) { return (mask[i / 32] >> i % 32 & 1) != 0; };
-        for (int at = 0; at < 32768; ++at) {
-            wrong += has(masks->column(at)) != (covered[i].x0 <= at && at <= covered[i].x1);
-            wrong += has(masks->row(at)) != (covered[i].y0 <= at && at <= covered[i].y1);
-        }
-    }
-    CHECK(wrong == 0);
 }
 
 TEST_CASE("a MaskBinner that was moved from is as new, and what it had goes on elsewhere") {
