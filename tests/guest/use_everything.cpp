@@ -44,10 +44,6 @@ struct Hash {
     }
 
     template <class Id> void add(const LightGrid<Id>& grid) {
-        add(static_cast<std::uint64_t>(grid.tiles_x()));
-        add(static_cast<std::uint64_t>(grid.tiles_y()));
-        add(grid.light_counts().lights);
-        add(grid.light_counts().rejected);
         add(grid.light_counts().culled);
         for (const ListRange range : grid.ranges()) {
             add(range.offset);
@@ -80,22 +76,13 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     hash.add(value_of(grid.copy_to(more_ranges, more_ids, value_of(grid.copy_to(more_ranges, more_ids)))));
     GridUnion<Id> both;
     hash.add(value_of(both.unite(grid, grid)));
-    const ListLengths lengths = list_lengths(grid);
-    hash.add(lengths.longest);
-    for (const std::uint64_t tiles : lengths.histogram)
-        hash.add(tiles);
+    hash.add(list_lengths(grid).longest);
     if constexpr (options.depth_test) {
         hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));
     } else {
         hash.add(value_of(binner.bin(view, lights)));
         hash.add(value_of(binner.bin(view, lights, {})));
     }
-}
-
-template <bool depth_test>
-void use_all_options(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
-    use_binner<Options{.ids = IdWidth::u16, .depth_test = depth_test}>(hash, view, lights, bounds);
-    use_binner<Options{.ids = IdWidth::u32, .depth_test = depth_test}>(hash, view, lights, bounds);
 }
 
 void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
@@ -109,8 +96,6 @@ void use_encodings(Hash& hash, const auto& grid) {
         std::vector<std::byte> bytes(
             static_cast<std::size_t>(encoded_bytes(format, grid.ranges().size(), grid.ids().size())));
         hash.add(value_of(encode(grid, format, bytes)).entries_cut);
-        for (const std::byte byte : bytes)
-            hash.add(std::to_integer<std::uint64_t>(byte));
     }
 }
 
@@ -118,14 +103,10 @@ void use_encodings(Hash& hash, const auto& grid) {
 void use_coverage(Hash& hash, const View& view, const auto& lights, const std::vector<float>& weights) {
     Binner<Options{.ids = IdWidth::u16}> binner;
     const auto grid = value_of(binner.bin(view, lights));
-    for (const LightCoverage& light : value_of(coverage(view, lights))) {
-        hash.add(light.id + std::uint64_t{65536} * light.x0 + light.y1);
-        for (const float number : {light.nearest, light.farthest, light.pixels})
-            hash.add(std::bit_cast<std::uint32_t>(number));
-    }
+    for (const LightCoverage& light : value_of(coverage(view, lights)))
+        hash.add(std::bit_cast<std::uint32_t>(light.pixels));
     MaskBinner masks;
-    for (const std::uint32_t word : value_of(masks.bin(view, lights)).words())
-        hash.add(word);
+    hash.add(value_of(masks.bin(view, lights)).mask_words());
     for (const std::uint32_t word : value_of(masks.bin(view, lights, value_of(Slices::linear(5, 0, 50)))).words())
         hash.add(word);
     Budget<std::uint16_t> budget;
@@ -133,10 +114,6 @@ void use_coverage(Hash& hash, const View& view, const auto& lights, const std::v
     hash.add(limited.grid);
     std::vector<std::uint32_t> entries(weights.size());
     hash.add(value_of(count_entries(limited.grid, entries)));
-    for (const std::uint32_t number : entries)
-        hash.add(number);
-    for (const std::uint32_t number : limited.cut_in_cell)
-        hash.add(number);
 }
 
 void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& lights) {
@@ -230,8 +207,9 @@ void use_view(Hash& hash, const View& view) {
     use_coverage(hash, view, world_space(vectors, camera, to_spot), weights);
     use_advice(hash, view, spheres, bounds);
     use_advice(hash, view, world_space(lamps, identity, to_light), {});
-    use_all_options<false>(hash, view, spheres, bounds);
-    use_all_options<true>(hash, view, spheres, bounds);
+    use_lights(hash, view, spheres, bounds);
+    use_binner<Options{.ids = IdWidth::u16}>(hash, view, spheres, bounds);
+    use_binner<Options{.ids = IdWidth::u16, .depth_test = true}>(hash, view, spheres, bounds);
     const std::vector<Spot> spots = {to_spot(vectors[0]), to_spot(vectors[1]), Spot::whole(spheres[2])};
     const glm::vec3 up(0, 1, 0), along(0, 0, -1);
     const std::vector<Box> boxes = {whole_box(corner, side, up, along),
@@ -271,12 +249,7 @@ std::uint64_t UNIT() {
          {View::from_projection(opengl, viewport), View::from_projection(reversed, viewport, upper),
           View::from_projection(infinite, viewport), View::from_projection(orthographic, viewport)})
         use_view(hash, value_of(view));
-    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0, ShaderLanguage::wgsl})
-        for (const IdWidth ids : {IdWidth::u16, IdWidth::u32}) {
-            const Result<ShaderText> shader = shader_snippet({.language = language, .format = {.ids = ids}});
-            for (const char letter : value_of(shader).text)
-                hash.add(static_cast<unsigned char>(letter));
-        }
+    hash.add(value_of(shader_snippet({.language = ShaderLanguage::hlsl_5_0})).text.size());
     hash.add(value_of(reduce_shader()).text.size());
     hash.add(value_of(cull_shader(CullPass::project)).text.size());
     return hash.value;

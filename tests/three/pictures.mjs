@@ -81,41 +81,6 @@ test('masks in place of lists: as three.js draws few lights itself, and as lists
     assert.ok(control > 300, 'it makes no difference if lights are left out');
 });
 
-test('another size, several cameras, a corner of the window and a render target', async () => {
-    const results = await page.evaluate(() => {
-        const {renderer, THREE} = stage, results = {};
-        const pictures = () => {
-            stage.resize(301, 173);
-            const made = {resized: stage.draw(), orthographic: stage.draw(stage.other)};
-            renderer.autoClear = false;
-            renderer.clear();
-            renderer.setViewport(37, 21, 200, 120);
-            stage.renderer.render(stage.scene, stage.camera);
-            renderer.setViewport(5, 3, 90, 50);
-            renderer.clearDepth();
-            made.corners = stage.draw(stage.other);
-            renderer.autoClear = true;
-            renderer.setViewport(0, 0, 301, 173);
-            const target = new THREE.WebGLRenderTarget(128, 96);
-            renderer.setRenderTarget(target);
-            renderer.render(stage.scene, stage.camera);
-            made.target = new Uint8Array(4 * 128 * 96);
-            renderer.readRenderTargetPixels(target, 0, 0, 128, 96, made.target);
-            renderer.setRenderTarget(null);
-            target.dispose();
-            return made;
-        };
-        stage.own();
-        stage.lights(50, 20);
-        const own = pictures();
-        stage.cluster();
-        const lists = pictures();
-        for (const name in own) results[name] = difference(own[name], lists[name]);
-        return results;
-    });
-    for (const [name, result] of Object.entries(results)) same(result, name, 1);
-});
-
 test('shadows, directional lights and lights that change stay as three.js draws them', async () => {
     const results = await page.evaluate(() => {
         const {THREE, renderer, scene} = stage, results = {};

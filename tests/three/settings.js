@@ -77,6 +77,22 @@ function composed(ratio, width, height) {
     };
 }
 
+/// Two cameras' pictures, one over a corner of the other one, neither over all of the window.
+function corners() {
+    return {
+        draw: () => {
+            renderer.autoClear = false;
+            renderer.clear();
+            renderer.setViewport(27, 21, 150, 90);
+            renderer.render(scene, camera);
+            renderer.setViewport(5, 3, 90, 50);
+            renderer.clearDepth();
+            return stage.draw(other);
+        },
+        undo: () => { renderer.autoClear = true; },
+    };
+}
+
 function part_of_target() {
     const target = new THREE.WebGLRenderTarget(200, 125);
     target.viewport.set(20.5, 10.25, 150.5, 90.75);
@@ -152,6 +168,7 @@ export const settings = {
     'EffectComposer': () => composed(1, 200, 125),
     'EffectComposer, pixel ratio 1.25': () => composed(1.25, 162, 101),
     'EffectComposer, pixel ratio 1.5': () => composed(1.5, 161, 100),
+    'two cameras in corners of the window': corners,
     'a part of a target, at fractions of pixels': part_of_target,
     'transmission': () => glass(1, 0, 0, 200, 125),
     'transmission, scale 0.5': () => glass(0.5, 0, 0, 200, 125),

@@ -46,6 +46,7 @@ float rough_log2(float x, float sign) {
 }
 
 /// How a shader of one's own looks up slices: floor(place * scale + bias), place being the depth or its logarithm.
+/// SimGear's is in tests/renderers/simgear.cpp.
 struct OwnFormula {
     bool by_log2;
     float scale, bias;
@@ -54,11 +55,6 @@ struct OwnFormula {
         const double begin = std::log2(static_cast<double>(first)),
                      scale = (count - 1) / (std::log2(static_cast<double>(last)) - begin);
         return {true, static_cast<float>(scale), static_cast<float>(1 - scale * begin)};
-    }
-    /// SimGear's, whose slices divide the depths from near to far: factors that are themselves computed in float.
-    static OwnFormula simgear(int count, float near, float far) {
-        const auto slices = static_cast<float>(count);
-        return {true, slices / std::log2(far / near), -slices * std::log2(near) / std::log2(far / near)};
     }
     static OwnFormula linear(int count, float begin, float end) {
         return {false, static_cast<float>(count) / (end - begin), -begin * static_cast<float>(count) / (end - begin)};
@@ -116,7 +112,6 @@ template <Options options> void check_margin() {
     check(*Slices::exponential(24, 0.1f, 1000), OwnFormula::exponential(24, 0.1f, 1000));
     check(*Slices::exponential(200, 0.5f, 90000), OwnFormula::exponential(200, 0.5f, 90000));
     check(*Slices::linear(100, 0.7f, 60), OwnFormula::linear(100, 0.7f, 60));
-    check(*Slices::exponential(24, 0.5f * std::pow(20000.0f, 1.0f / 24), 10000), OwnFormula::simgear(24, 0.5f, 10000));
 }
 
 }  // namespace

@@ -18,19 +18,6 @@ bool names(const Error& error, std::uint64_t number) {
 
 }  // namespace
 
-TEST_CASE("too many lights for the id type") {
-    const View view = test::view({64, 64}, 32);
-    const std::vector<glm::vec4> lights(65537, glm::vec4(0, 0, 50, 1));
-    Binner<Options{.ids = IdWidth::u16}> narrow;
-    const auto grid = narrow.bin(view, lights);
-    REQUIRE(!grid);
-    CHECK(grid.error().code == ErrorCode::too_many_lights);
-    CHECK(names(grid.error(), 65537));
-    CHECK(names(grid.error(), 65536));
-    Binner<> wide;
-    CHECK(wide.bin(view, lights));
-}
-
 TEST_CASE("more lights than 32 bits number") {
     if constexpr (sizeof(std::size_t) > 4) {
         // Lights of a byte, of which there is one: they are refused before they are read.

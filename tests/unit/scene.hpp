@@ -57,6 +57,16 @@ inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
     return *lightbin::View::from_projection(projection, viewport, {.tile_size = tile_size});
 }
 
+/// Cameras that look down -z and +z, off-centre, with pixels that are not square, and without perspective.
+inline std::vector<lightbin::View> cameras(int tile_size) {
+    std::vector<lightbin::View> all;
+    for (const glm::mat4& projection :
+         {glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 1000.0f), glm::frustumRH_NO(-0.2f, 0.05f, -0.1f, 0.3f, 0.25f, 500.0f),
+          glm::perspectiveLH_NO(1.0f, 1.5f, 2.0f, 60.0f), glm::orthoRH_NO(-30.0f, 50.0f, -20.0f, 25.0f, 1.0f, 80.0f)})
+        all.push_back(*lightbin::View::from_projection(projection, {500, 330}, {.tile_size = tile_size}));
+    return all;
+}
+
 /// Around and in front of the eye, which looks down -z; some behind, some around the eye.
 inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);

@@ -364,18 +364,6 @@ void check_place(const View& view, const Projected& made, const lightbin::ViewPo
     CHECK(back.x == doctest::Approx(point.x).epsilon(1e-9));
     CHECK(back.y == doctest::Approx(point.y).epsilon(1e-9));
     CHECK(back.z == point.z);
-
-    const bool inside =
-        x >= 0 && x < width && y >= 0 && y < height && (!made.perspective || made.forward * point.z > 0);
-    const auto distance = [&](long double c) {  // to the next pixel's edge
-        return std::fabs(c - std::round(c));
-    };
-    if (distance(x) < error || distance(y) < error) return;
-    const auto tile = view.tile_at(place);
-    REQUIRE(tile.has_value() == inside);
-    if (!tile) return;
-    CHECK(tile->x == static_cast<int>(std::floor(x / view.tile_size())));
-    CHECK(tile->y == static_cast<int>(std::floor(y / view.tile_size())));
 }
 
 }  // namespace
@@ -383,7 +371,6 @@ void check_place(const View& view, const Projected& made, const lightbin::ViewPo
 TEST_CASE("a point of view space lies where the matrix puts it, and back") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> side(-1.2, 1.2), depth(-5, 60);
-    int seen = 0;
     for (const Projected& made : all_kinds())
         for (const lightbin::Extent viewport :
              {full_hd, lightbin::Extent{1919, 1079}, lightbin::Extent{3, 500}})
@@ -397,10 +384,8 @@ TEST_CASE("a point of view space lies where the matrix puts it, and back") {
                     const lightbin::ViewPoint point = {side(random) * reach, side(random) * reach,
                                                        made.forward * distance};
                     check_place(*view, made, point);
-                    seen += view->tile_at(view->image_point(point)).has_value();
                 }
             }
-    CHECK(seen > 2000);
 }
 
 TEST_CASE("the tile of each pixel, and of what is none") {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 using namespace lightbin;
@@ -199,6 +200,8 @@ TEST_CASE("a union of two grids lists what either lists, once and in order") {
                 CHECK(united->ranges().size() == a.size());
                 CHECK(united->ids().size() == test::entries(expected));
                 CHECK(united->light_counts().lights == 900);
+                std::decay_t<decltype(both)> of_union;  // with one of both, which the union has already
+                CHECK(test::to_lists(*of_union.unite(*united, *second)) == expected);
             };
             constexpr Options tiles = {.ids = IdWidth::u16},
                               clusters = {.ids = IdWidth::u16, .slicing = Slicing::clusters};
@@ -207,28 +210,6 @@ TEST_CASE("a union of two grids lists what either lists, once and in order") {
             Binner<clusters> left_clusters, right_clusters;
             check(of_clusters, left_clusters, right_clusters, inputs_for<clusters>({}, slices));
         }
-}
-
-TEST_CASE("a union of a union is one of three; of an empty list and of one list it is the other") {
-    const View view = test::view({128, 96}, 32);
-    Binner<> binners[3];
-    const auto a = binners[0].bin(view, test::random_lights(100, 1)),
-               b = binners[1].bin(view, test::random_lights(100, 2)),
-               c = binners[2].bin(view, test::random_lights(100, 4));
-    GridUnion<> two, three, other_order;
-    const auto ab = two.unite(*a, *b), abc = three.unite(*ab, *c), cab = other_order.unite(*c, *ab);
-    CHECK(test::to_lists(*abc) == test::to_lists(*cab));
-    const auto lists = test::to_lists(*abc);
-    for (const auto& one : {*a, *b, *c})
-        CHECK(test::is_superset(lists, test::to_lists(one)));
-
-    Binner<> of_none;
-    const auto none = of_none.bin(view, std::vector<glm::vec4>());
-    GridUnion<> with_none;
-    CHECK(test::to_lists(*with_none.unite(*a, *none)) == test::to_lists(*a));
-    CHECK(test::to_lists(*with_none.unite(*none, *a)) == test::to_lists(*a));
-    CHECK(test::entries(test::to_lists(*with_none.unite(*none, *none))) == 0);
-    CHECK(test::to_lists(*with_none.unite(*a, *a)) == test::to_lists(*a));
 }
 
 TEST_CASE("grids that have no union are refused by name") {
