@@ -443,6 +443,7 @@ static void test_shapes(void) {
     memset(&cube, 0, sizeof cube);
     memset(&sphere, 0, sizeof sphere);
     NEEDS(lightbin_cube_box(&cube, 0.5, &box), "transform");
+    cube.floats = projection;
     CHECK(lightbin_tube_box(a, b, -2, &box).error == LIGHTBIN_OK && box.radius < 0); /* a bad light, no error */
     NEEDS(lightbin_spot_sphere(NULL, &sphere), "spot");
     NEEDS(lightbin_box_sphere(&box, NULL), "sphere");
