@@ -677,27 +677,6 @@ static void test_cull(void) {
     lightbin_view_destroy(view);
 }
 
-/* Structs of shaders whose members are all 0 but for `size` are the defaults, which are no error. */
-static void test_shader_defaults(void) {
-    lightbin_snippet_options snippet;
-    lightbin_reduce_options reduce;
-    lightbin_cull_options cull;
-    lightbin_shader* shader = NULL;
-    int kind;
-    CLEAR(snippet);
-    CLEAR(reduce);
-    CLEAR(cull);
-    for (kind = 0; kind < 3; ++kind) {
-        const lightbin_result result = kind == 0   ? lightbin_shader_snippet(&snippet, &shader)
-                                       : kind == 1 ? lightbin_reduce_shader(&reduce, &shader)
-                                                   : lightbin_cull_shader(&cull, &shader);
-        CHECK(result.error == LIGHTBIN_OK);
-        CHECK(strstr(lightbin_shader_text(shader), "std430") != NULL); /* storage buffers, which GLSL 4.30 has */
-        lightbin_shader_destroy(shader);
-        shader = NULL;
-    }
-}
-
 /* Everything once. Returns the first error. */
 static lightbin_result use_everything(uint64_t* sum) {
     lightbin_view_options view_given = view_options();
@@ -822,7 +801,6 @@ int main(void) {
     test_grids();
     test_depth();
     test_cull();
-    test_shader_defaults();
     CHECK(use_everything(&sum).error == LIGHTBIN_OK && sum != 0);
 #if defined(COUNTED_MEMORY)
     test_memory();
