@@ -52,9 +52,12 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     const same = (array, what) => assert.ok(bytes_of(block()).equals(bytes_of(array)), what);
     const projection = block(Float64Array), camera = block(Float64Array);
     const [spheres, spots, boxes, min, max] = Array.from({length: 5}, () => block(Float32Array));
-    const view = lightbin.view({projection, width: 500, height: 290, tileSize: 24});
-    const slices = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120});
-    same(slices.boundaries, 'boundaries');
+    const view = lightbin.view({projection, width: 500, height: 290, tileSize: 24, origin: 'upper-left',
+                                clipDepth: 'zero-to-one'});
+    const slices = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120}), {boundaries} = slices;
+    same(boundaries, 'boundaries');
+    const given = lightbin.slicesFromBoundaries({boundaries: [...boundaries]});
+    assert.deepEqual([given.count, given.boundaries], [17, boundaries]);
 
     // Spots and boxes are in the module's memory, spheres and bounds are not.
     const cones = lightbin.floats(spots.length), rooms = lightbin.floats(boxes.length);
@@ -74,11 +77,32 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
         same(Uint32Array.of(grid.lights, grid.rejected, grid.culled, grid.slices), what);
         for (const key of ['ranges', 'ids', 'order', 'bins']) same(grid[key], `${what}: ${key}`);
         assert.ok(grid.ids.length > 0 && grid.ids.BYTES_PER_ELEMENT === grid.idBytes);
+        same(grid.countEntries(), `entries, ${what}`);
+        const {longest, histogram} = grid.listLengths(), encoded = grid.encode({encoding: 'sentinel', capacity: 1});
+        same(Uint32Array.of(longest), `longest list, ${what}`);
+        same(BigUint64Array.from(histogram, BigInt), `histogram, ${what}`);
+        same(encoded.data, `encoded, ${what}`);
+        same(Uint32Array.of(encoded.tilesCut, encoded.entriesCut, encoded.capacityNeeded), `cut, ${what}`);
+        if (!depthTest && slicing !== 'clusters') {
+            const masks = binner.masks(view, lights, inputs), {rejected, culled, firstSpot, firstBox, maskWords} = masks;
+            same(Uint32Array.of(masks.lights, rejected, culled, firstSpot, firstBox, maskWords), `masks, ${what}`);
+            for (const key of ['words', 'ids', 'bins']) same(masks[key], `masks, ${what}: ${key}`);
+        }
         binner.dispose();
         ++grids;
     }
     assert.equal(grids, 24);
 
+    const image = view.project([-4, 2.5, -10]);
+    same(Float64Array.from(image), 'image point');
+    same(Float64Array.from(view.unproject(new Float64Array(image))), 'view point');
+    same(Float32Array.from(view.depths(0.25, 0.5)), 'view depths');
+    same(Float64Array.of(view.windowDepth(7)), 'window depth');
+    for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
+    same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
+    same(view.shaderGrid(5, 7), 'grid constants');
+    same(view.shaderView(1.5), 'view constants');
+    same(slices.shaderWords(), 'words of slices');
     assert.equal(await lightbin.viewText(view), Buffer.from(block()).toString());
     same(view.shaderEdges(), 'edges');
     same(slices.shaderSlabs(), 'slabs');
@@ -104,39 +128,19 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
         }
     }
     assert.equal(at, file.length);
-    return [view, slices, wide, cones, rooms];
+    return [view, slices, given, wide, cones, rooms];
 });
 
-test_both('masks have the lights of the lists in every tile, with and without z-bins', async lightbin => {
-    const view = lightbin.view({...square, width: 300}), floats = lightbin.floats(4 * 150);
-    const slices = lightbin.exponentialSlices({count: 9, first: 2, last: 50}), made = [view, floats, slices];
-    floats.array.set(random_spheres(150));
-    const axes = Float32Array.from({length: 3 * 50}, () => random(-1, 1));
-    const spots = random_spheres(50), boxes = random_spheres(20);
-    const lights = {viewMatrix: identity, spheres: {array: floats},
-        spots: {array: spots, stride: 4, axis: axes, cosine: new Float32Array(50).fill(0.8)},
-        boxes: {boxCentre: boxes, halfAxes: Float32Array.from({length: 9 * 6}, () => random(-3, 3)), count: 6}};
+test_both('masks end with the lists that take their place, and with their binner', async lightbin => {
+    const view = lightbin.view(square), lights = {spheres: {array: random_spheres(150)}};
+    const slices = lightbin.exponentialSlices({count: 9, first: 2, last: 50}), made = [view, slices];
     for (const slicing of ['no-slicing', 'z-bins']) {
         const binner = lightbin.binner({slicing}), inputs = slicing === 'z-bins' ? {slices} : {};
-        const grid = binner.bin(view, lights, inputs), {order} = grid, bins = [...grid.bins];
-        const lists = lists_of(grid).map(list => list.map(id => order.length > 0 ? order[id] : id));
-        const masks = binner.masks(view, lights, inputs), words = masks.maskWords;
+        const grid = binner.bin(view, lights, inputs), masks = binner.masks(view, lights, inputs);
         assert.equal(grid.ids.length, 0);  // the lists ended with the next call
-        const same = () => {
-            const {words: all, ids} = masks, has = (mask, i) => all[1 + mask * words + (i >> 5)] >>> i % 32 & 1;
-            const tiles = Array.from({length: masks.tilesX * masks.tilesY}, (_, tile) => {
-                const [x, y] = [tile % masks.tilesX, Math.floor(tile / masks.tilesX)];
-                return [...ids].filter((_, i) => has(x, i) && has(masks.tilesX + 1 + y, i));
-            });
-            assert.deepEqual(tiles, lists);
-        };
-        same();
-        assert.ok(lists.flat().some(id => id >= masks.firstBox) && masks.firstSpot === 150);
-        assert.deepEqual([masks.lights, masks.rejected, masks.culled + masks.ids.length], [206, 0, 206]);
-        assert.deepEqual([...masks.bins], bins);
-        const size = 1 + (masks.tilesX + 1 + masks.tilesY + 32) * words;
-        assert.equal(masks.words[0], words);
-        assert.deepEqual([...masks.words.subarray(size)], bins);
+        const words = [...masks.words], ids = [...masks.ids];
+        const same = () => assert.deepEqual([[...masks.words], [...masks.ids]], [words, ids]);
+        assert.ok(ids.length > 0);
         assert.equal(masks.words, masks.words);  // not made again while the memory stands
         const old = masks.words, large = lightbin.floats(old.buffer.byteLength / 4);
         assert.equal(old.length, 0);
@@ -264,6 +268,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => view.windowDepth({}), /^depth: an object is no number$/],
             [() => view.depths('0', 1), /^lower: 0 is no number$/],
             [() => view.project([1, 2n, 3]), /^point: element 1 is no number$/],
+            [() => view.project([1, 2]), /^point must be an array of 3/],
             [() => view.shaderView(Symbol('2')), /^tolerance: /],
             [() => view.shaderGrid(0.5), /^cornerX: 0.5 is no whole number/],
             [() => lightbin.binner({slicing: 'toString'}), /is none of no-slicing, clusters, z-bins$/],
@@ -337,6 +342,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             ['null-argument', () => binner.bin(gone, lights), /^view: /],
             ['null-argument', () => gone.update(square), /^view: it was disposed of$/],
             ['null-argument', () => gone.windowDepth(3), /^view: /],
+            ['null-argument', () => gone.unproject([1, 2, 3]), /^view: /],
             ['null-argument', () => ended.resize(4), /^floats: it was disposed of$/],
             ['null-argument', binned({array: ended}), /^floats: it was disposed of$/],
             ['null-argument', binned({centre: spheres, count: 2}), /^lights.spheres.radius: /],
@@ -455,87 +461,6 @@ test_both('thousands of calls allocate nothing, and what is disposed of is free'
         assert.equal(lightbin.allocations, live);
     }
     return [...views, binner];
-});
-
-test_both('encodings and views agree with the lists', lightbin => {
-    const view = lightbin.view(square), binner = lightbin.binner(), lights = {spheres: {array: random_spheres(70)}};
-    const grid = binner.bin(view, lights), expected = lists_of(grid);
-    assert.equal(view.info.tilesX * view.info.tilesY, expected.length);
-    const longest = Math.max(...expected.map(list => list.length));
-    const cut = grid.encode({encoding: 'sentinel', ids: 'u8', capacity: longest - 1});
-    assert.equal(cut.capacityNeeded, longest);
-    assert.ok(cut.tilesCut > 0 && cut.entriesCut >= cut.tilesCut);
-    for (const [tile, list] of expected.entries()) {
-        const ids = [...cut.data.subarray(tile * (longest - 1), (tile + 1) * (longest - 1)), 255];
-        assert.deepEqual(ids.slice(0, ids.indexOf(255)), list.slice(0, longest - 1));
-    }
-    assert.throws(() => binner.bin(null, lights));
-    assert.equal(grid.ids.length, 0);  // the lists ended with the binner's next call
-
-    assert.deepEqual([...view.shaderGrid(5, 7)], [16, 20, 320, 320, 5, 7, 0, 0]);
-    assert.equal(view.shaderView(2)[7], 2);
-    const {nearDepth, farDepth, orthographic, looksDownNegativeZ} = view.info;
-    assert.ok(nearDepth <= 0.5 && nearDepth > 0.4999 && farDepth >= 199.9 && farDepth < 200.1);
-    assert.deepEqual([orthographic, looksDownNegativeZ], [0, 1]);
-    const slices = lightbin.slicesFromBoundaries({boundaries: [1, 2, 4]});
-    assert.equal(slices.count, 4);
-    assert.deepEqual([...slices.boundaries], [1, 2, 4]);
-    assert.deepEqual([...slices.shaderWords().subarray(3)], [3, 0xbf800000, 0xc0000000, 0xc0800000]);
-    assert.equal(lightbin.lightRange(4, 1), Math.fround(lightbin.lightRange(4, 1)));
-    assert.ok(Math.abs(lightbin.lightRange(4, 1) - 2) < 1e-6);
-    return [view, binner, slices];
-});
-
-test('points and depths are where a pinhole camera of 90 degrees has them', () => {
-    for (const lightbin of modules)
-        for (const [origin, clipDepth] of [['lower-left', 'minus-one-to-one'], ['upper-left', 'zero-to-one']]) {
-            const half = clipDepth === 'zero-to-one', [near, far] = [0.5, 200], projection = perspective(near, far);
-            if (half) [projection[10], projection[14]] = [-far / (far - near), -far * near / (far - near)];
-            const view = lightbin.view({...square, projection, origin, clipDepth});
-            const close = (got, wanted) => got.forEach((number, i) =>
-                assert.ok(Math.abs(number - wanted[i]) <= 1e-4 * (1 + Math.abs(wanted[i])), `${got}, not ${wanted}`));
-            for (const [x, y, z] of [[0, 0, -1], [0.3, -0.7, -2], [-40, 25, -100]]) {
-                const up = origin === 'lower-left' ? 1 : -1;
-                const image = view.project([x, y, z]);
-                close(image, [160 * (x / -z + 1), 160 * (up * y / -z + 1), -z]);
-                close(view.unproject(new Float64Array(image)), [x, y, z]);
-                const window = far / (far - near) * (1 - near / -z);  // in both ranges of clip depth
-                close([view.windowDepth(-z)], [window]);
-                const [least, greatest] = view.depths(window, window + 1e-4);
-                assert.ok(least <= -z && -z <= greatest);
-                const deeper = near / (1 - (window + 1e-4) * (far - near) / far);
-                close([least / -z, greatest / deeper], [1, 1]);
-            }
-            assert.throws(() => view.project([1, 2]), {code: 'not-a-value', message: /^point must be an array of 3/});
-            view.dispose();
-            assert.throws(() => view.unproject([1, 2, 3]), {code: 'null-argument', message: /^view: /});
-            assert.equal(lightbin.allocations, 0);
-        }
-});
-
-test_both('slices and lists are counted as their arrays say', lightbin => {
-    const boundaries = [1, 2, 4], slices = lightbin.slicesFromBoundaries({boundaries});
-    for (const depth of [-3, 0.99, 1, 1.5, 2, 3.99, 4, Infinity])
-        assert.equal(slices.at(depth), boundaries.filter(boundary => boundary <= depth).length);
-    for (const [distance, range] of [[0, 3], [1, 3], [2.9, 3], [3, 3], [5, 3], [5, Infinity]]) {
-        const expected = Math.max(0, 1 - (distance / range) ** 4) ** 2;
-        assert.ok(Math.abs(lightbin.lightWindow(distance, range) - expected) < 1e-6);
-    }
-    const view = lightbin.view(square), spheres = {array: random_spheres(90)};
-    for (const slicing of ['no-slicing', 'z-bins']) {
-        const binner = lightbin.binner({slicing});
-        const grid = binner.bin(view, {spheres}, slicing === 'z-bins' ? {slices} : {});
-        const lists = lists_of(grid), lengths = lists.map(list => list.length);
-        const histogram = new Array(33).fill(0), entries = new Array(90).fill(0);
-        for (const length of lengths) ++histogram[length === 0 ? 0 : Math.floor(Math.log2(length)) + 1];
-        for (const id of lists.flat()) ++entries[slicing === 'z-bins' ? grid.order[id] : id];
-        assert.deepEqual(grid.listLengths(), {longest: Math.max(...lengths), histogram});
-        assert.deepEqual([...grid.countEntries()], entries);
-        assert.ok(entries.includes(0) && Math.max(...entries) > 1);
-        binner.dispose();
-        assert.equal(grid.countEntries().length, 0);
-    }
-    return [view, slices];
 });
 
 test('the lists of several views, one view after another', async () => {

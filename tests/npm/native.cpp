@@ -9,6 +9,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <limits>
+#include <vector>
 
 namespace {
 
@@ -33,6 +34,10 @@ void write_block(const void* bytes, std::size_t size) {
 void write_text(lightbin_shader* shader) {
     write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
     lightbin_shader_destroy(shader);
+}
+
+template <class Number> void write_numbers(std::initializer_list<Number> numbers) {
+    write_block(numbers.begin(), numbers.size() * sizeof(Number));
 }
 
 /// One of the structs that begin with their size.
@@ -94,6 +99,32 @@ lightbin_lights lights_of(const double* camera) {
     return lights;
 }
 
+/// What is made of a grid.
+void write_uses(const lightbin_grid& grid) {
+    std::vector<std::uint32_t> entries(grid.lights);
+    std::uint32_t listed = 0, longest = 0;
+    std::uint64_t histogram[33], bytes = 0;
+    succeed(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed));
+    write_block(entries.data(), entries.size() * sizeof entries[0]);
+    succeed(lightbin_list_lengths(&grid, &longest, histogram));
+    write_numbers({longest});
+    write_block(histogram, sizeof histogram);
+    const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U32, 1};  // no element is left as it was
+    succeed(lightbin_encoded_bytes(&format, grid.range_count, grid.id_count, &bytes));
+    std::vector<char> out(bytes);
+    auto encoded = sized<lightbin_encoded>();
+    succeed(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
+    write_block(out.data(), out.size());
+    write_numbers({encoded.tiles_cut, static_cast<std::uint32_t>(encoded.entries_cut), encoded.capacity_needed});
+}
+
+void write_masks(const lightbin_masks& masks) {
+    write_numbers({masks.lights, masks.rejected, masks.culled, masks.first_spot, masks.first_box, masks.mask_words});
+    write_block(masks.words, masks.word_count * sizeof *masks.words);
+    write_block(masks.ids, masks.id_count * sizeof *masks.ids);
+    write_block(masks.bins, masks.bin_count * sizeof *masks.bins);
+}
+
 }  // namespace
 
 int main(int count, char** names) {
@@ -106,6 +137,8 @@ int main(int count, char** names) {
     view_options.width = WIDTH;
     view_options.height = HEIGHT;
     view_options.tile_size = TILE;
+    view_options.origin = LIGHTBIN_UPPER_LEFT;
+    view_options.clip_depth = LIGHTBIN_ZERO_TO_ONE;
     view_options.projection.doubles = projection;
     lightbin_view* view = nullptr;
     lightbin_slices *slices = nullptr, *wide_slices = nullptr;
@@ -139,17 +172,45 @@ int main(int count, char** names) {
         lightbin_binner* binner = nullptr;
         succeed(lightbin_binner_create(&options, &binner));
         succeed(lightbin_bin(binner, view, &lights, &inputs, &grid));
-        const auto grid_slices = static_cast<std::uint32_t>(grid.slices);
-        const std::uint32_t counts[] = {grid.lights, grid.rejected, grid.culled, grid_slices};
-        write_block(counts, sizeof counts);
+        write_numbers({grid.lights, grid.rejected, grid.culled, static_cast<std::uint32_t>(grid.slices)});
         write_block(grid.ranges, grid.range_count * sizeof *grid.ranges);
         write_block(grid.ids, grid.id_count * grid.id_bytes);
         write_block(grid.order, grid.order_count * sizeof *grid.order);
         write_block(grid.bins, grid.bin_count * sizeof *grid.bins);
+        write_uses(grid);
+        if (options.depth_test == 0 && options.slicing != LIGHTBIN_CLUSTERS) {
+            auto masks = sized<lightbin_masks>();
+            succeed(lightbin_bin_masks(binner, view, &lights, &inputs, &masks));
+            write_masks(masks);
+        }
         lightbin_binner_destroy(binner);
     }
 
-    // What shaders read that reduce depth and build the lists on the GPU.
+    // Points and depths.
+    const double point[3] = {-4, 2.5, -10};
+    double image[3], back[3];
+    float depths[2];
+    succeed(lightbin_view_project(view, point, image));
+    write_block(image, sizeof image);
+    succeed(lightbin_view_unproject(view, image, back));
+    write_block(back, sizeof back);
+    succeed(lightbin_view_depths(view, 0.25, 0.5, depths));
+    write_block(depths, sizeof depths);
+    write_numbers({lightbin_view_window_depth(view, 7)});
+    for (const float depth : {-3.0f, 1.5f, 20.0f, std::numeric_limits<float>::infinity()})
+        write_numbers({lightbin_slices_at(slices, depth)});
+    write_numbers({lightbin_light_range(100, 0.01f), lightbin_light_window(1, 3), lightbin_light_window(5, 3)});
+
+    // What shaders read of views and slices.
+    lightbin_grid_constants grid_constants = {};
+    succeed(lightbin_shader_grid(view, 5, 7, &grid_constants));
+    write_block(&grid_constants, sizeof grid_constants);
+    lightbin_view_constants view_constants = {};
+    succeed(lightbin_shader_view(view, 1.5f, &view_constants));
+    write_block(&view_constants, sizeof view_constants);
+    std::uint32_t words[17 + 3];
+    succeed(lightbin_shader_slices(slices, words, 17 + 3));
+    write_block(words, sizeof words);
     char text[1024];
     const std::size_t length = lightbin_view_text(view, text, sizeof text);
     if (length >= sizeof text) return EXIT_FAILURE;
