@@ -77,7 +77,7 @@ extern const std::uint32_t room;
 
 extern std::span<lightbin::ListRange> mapped_ranges;
 extern std::span<std::uint32_t> mapped_ids;
-extern int tile_buffer, list_buffer, constant_buffer, footprints_buffer, z_bounds_buffer;
+extern int mask_buffer, slice_buffer, tile_buffer, list_buffer, constant_buffer, footprints_buffer, z_bounds_buffer;
 extern const std::string vertex_text, your_fragment_text, your_pixel_shader, your_wgsl;
 template <class... Arguments> void add_compute_pass(Arguments&&... arguments);
 GLuint link(const std::string& vertex, const std::string& fragment);
