@@ -28,7 +28,7 @@ struct Built {
     std::span<const std::uint32_t> ids = {};        ///< where they are of 32 bits; with z-bins ranks
     std::span<const lightbin::BinRange> bins = {};  ///< with z-bins
     std::span<const std::uint32_t> order = {};      ///< with z-bins, the light of each rank
-    std::optional<lightbin::LightMasks> masks = {}; ///< in place of all that, but for bytes and slices
+    std::optional<lightbin::LightMasks> masks = {};  ///< in place of all that, but for bytes and slices
 };
 
 /// Builds with the slices that the view has for them.

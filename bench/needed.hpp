@@ -134,8 +134,9 @@ inline Reading read_lists(const TiledView& view, const Picture& picture, const B
         if (!built.bins.empty()) list = lightbin::lights_of_bin(list, built.bins[slice]);
         reading.evaluations += list.size();
         if (built.masks)
-            reading.words += built.bins.empty() ? built.masks->mask_words()
-                                                : built.bins[slice].greatest / 32 - built.bins[slice].least / 32 + 1;
+            reading.words += built.bins.empty()
+                                 ? built.masks->mask_words()
+                                 : built.bins[slice].greatest / 32 - built.bins[slice].least / 32 + 1;
         if (list.data() != before.data() || list.size() != before.size() || list_number == 0) {
             ++list_number;
             for (const std::uint32_t id : list)

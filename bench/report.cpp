@@ -283,7 +283,8 @@ SceneReport measure(Case scene) {
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const Measured& m = measured[i];
         const double evaluations = m.evaluations / pixels, words = m.words / pixels,
-                     shade = (evaluations + words * lightbin::Costs{}.word_evaluations) * drawn * evaluation_ns * 1e-6;
+                     shade = (evaluations + words * lightbin::Costs{}.word_evaluations) * drawn *
+                             evaluation_ns * 1e-6;
         std::vector<double> totals;
         for (std::size_t turn = 0; turn < m.build.size(); ++turn)
             totals.push_back(m.bounds[turn] + m.build[turn] + m.upload[turn] + shade);
@@ -301,7 +302,8 @@ void write_csv(const std::vector<SceneReport>& reports) {
     std::FILE* const csv = open_report(
         "report.csv",
         "scene,lights,views,method,tile_px,bounds_ms,build_ms,upload_ms,shade_ms,total_ms,total_p10_ms,"
-        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored,words");
+        "total_p90_ms,evals,needed,ratio,kilobytes,front,misses,evaluation_ns,cutoff,rmse,rmse_restored,"
+        "words");
     for (const SceneReport& report : reports) {
         for (const Result& r : report.results)
             std::fprintf(csv,

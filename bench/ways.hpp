@@ -80,7 +80,9 @@ private:
                     return *binner->bin(view.view, lights);
                 },
                 set);
-            return {.bytes = masks.words().size_bytes(), .slices = binned ? &view.z_bins : nullptr, .masks = masks};
+            return {.bytes = masks.words().size_bytes(),
+                    .slices = binned ? &view.z_bins : nullptr,
+                    .masks = masks};
         };
         for (const int tile_size : {8, 16, 32, 64})
             all_.push_back(

@@ -12,8 +12,6 @@ std::vector<Technique> every_technique() {
     for (const ZEnds ends : {ZEnds::none, ZEnds::min, ZEnds::max, ZEnds::both})
         all.push_back(tiled_forward_pre_z(ends));
     all.push_back(tiled_forward_box());
-    for (const int bits : {8, 16})
-        all.push_back(light_indexed(bits));
     for (const auto technique : {tiled_deferred, deferred, deferred_stencil})
         for (const int bits : {16, 32})
             all.push_back(technique(bits));

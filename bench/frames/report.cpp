@@ -111,7 +111,8 @@ void print_rows(const std::vector<Row>& rows) {
         std::printf("\n%s: %s\n", key.first.c_str(), key.second.c_str());
         print_table(by_technique(its));
     }
-    std::printf("\nshading: the time in which surfaces are drawn and lit, over TiledForward's. words: of masks, for a "
+    std::printf("\nshading: the time in which surfaces are drawn and lit, over TiledForward's. words: of "
+                "masks, for a "
                 "pixel.\n");
 }
 

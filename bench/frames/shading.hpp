@@ -10,7 +10,8 @@
 
 /// How a technique's shaders find the lights of a surface.
 struct LightLookup {
-    /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id; of masks also MASKS.
+    /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id; with masks also
+    /// MASKS.
     std::string text;
 };
 LightLookup every_light();

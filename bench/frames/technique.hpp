@@ -27,7 +27,6 @@ Technique tiled_deferred(int g_buffer_bits);
 Technique deferred(int g_buffer_bits);
 Technique deferred_stencil(int g_buffer_bits);
 
-Technique light_indexed(int id_bits);
 Technique clustered_forward();
 Technique z_binned_forward();
 Technique masked_forward(lightbin::Slicing slicing);  ///< none, z_bins

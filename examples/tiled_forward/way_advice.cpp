@@ -31,7 +31,8 @@ lightbin::Advice WayCosts::advise() {
         std::vector<lightbin::Plan> plans(bounded.plans().begin(), bounded.plans().end());
         for (const lightbin::Plan& plan : sliced.plans())
             if (plan.slicing != lightbin::Slicing::none) plans.push_back(plan);
-        std::erase_if(plans, [](const lightbin::Plan& plan) { return plan.masks; });  // WayCosts measures lists
+        std::erase_if(plans,
+                      [](const lightbin::Plan& plan) { return plan.masks; });  // WayCosts measures lists
         return lightbin::Advice(std::move(plans));
     };
     return has_cones() ? advised(sets_[0].spots) : advised(sets_[0].spheres);

@@ -32,8 +32,8 @@ struct Costs {
 };
 
 /// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
-/// View::with_tile_size() the tile size. A plan with masks is for a MaskBinner, which is given the slices if `slicing` is
-/// z_bins; the Binner of its options makes lists of the same lights.
+/// View::with_tile_size() the tile size. A plan with masks is for a MaskBinner, which is given the slices if `slicing`
+/// is z_bins; the Binner of its options makes lists of the same lights.
 struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light; `depth_test` to `tile_size` mean nothing
     bool depth_test = false;
@@ -127,7 +127,8 @@ decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 
 /// Measures what each way to light a view costs: without tiles; and with tiles of the view's tile size, of 2, 4 and 8
 /// times that size, and of one tile as large as the screen, each by masks and by lists without and, if there are
-/// `bounds`, with the depth test. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
+/// `bounds`, with the depth test. So pass the view with the smallest tiles that you would use. Errors: those of
+/// Binner::bin().
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
 /// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
@@ -158,8 +159,8 @@ struct WeighedSlices {
 };
 
 /// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles, and tiles with
-/// z-bins, by lists and by masks; clusters without and with the depth test. The tile sizes are those of advise(). Each depth
-/// sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part between
+/// z-bins, by lists and by masks; clusters without and with the depth test. The tile sizes are those of advise(). Each
+/// depth sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part between
 /// the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors:
 /// those of Binner::bin(), and fewer depths than samples.size says.
 ///

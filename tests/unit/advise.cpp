@@ -215,7 +215,8 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
                     CHECK(plan.entries == masks.words().size());
                     CHECK(plan.words == sampled([&](int, int, float depth) {
                               if (!binned) return std::size_t{masks.mask_words()};
-                              const BinRange bin = masks.bins()[static_cast<std::size_t>(hundred.slice_at(depth))];
+                              const BinRange bin =
+                                  masks.bins()[static_cast<std::size_t>(hundred.slice_at(depth))];
                               std::set<std::size_t> words = {bin.least / 32};
                               for (std::size_t rank = bin.least; rank <= bin.greatest; ++rank)
                                   words.insert(rank / 32);
