@@ -169,7 +169,7 @@ TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bi
 TEST_CASE("what keeps nothing from call to call loses nothing, either") {
     const Input scene({320, 200}, 8, 300, 3);
     check_function([&] {
-        std::uint32_t entries = 0;  // in any order: times differ from call to call
+        std::uint64_t entries = 0;  // in any order: times differ from call to call
         for (const Plan& plan : advise(scene.view, scene.lights, {}, scene.bounds())->plans())
             entries += plan.entries;
         return std::to_string(entries);

@@ -1,10 +1,9 @@
-// Several views in one pair of buffers, and the union of two views' lists.
+// Several views in one pair of buffers, and the union of two views' lists. That encode() takes the grid of all views is
+// proven in tests/shader, whose shaders read it.
 #include "scene.hpp"
 
-#include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 
-#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -90,17 +89,6 @@ template <Options options> void check_shared(const View& view, const Slices& sli
         offset += range.count;
     }
     CHECK(offset == ids);
-    // encode() takes the grid of all views: the last third of the lists is that of the last view.
-    const ListFormat format = {.encoding = ListEncoding::sentinel, .capacity = 700};
-    const auto bytes_of = [&](const LightGrid<Id>& grid) {
-        std::vector<std::byte> bytes(encoded_bytes(format, grid.ranges().size(), grid.ids().size()));
-        REQUIRE(encode(grid, format, bytes));
-        return bytes;
-    };
-    const auto last = binner.bin(view, seen_from(0.5f, test::random_lights(700, 5)), inputs);
-    const auto alone = bytes_of(*last), together = bytes_of(*all);
-    CHECK(together.size() == 3 * alone.size());
-    CHECK(std::equal(alone.begin(), alone.end(), together.end() - static_cast<std::ptrdiff_t>(alone.size())));
 }
 
 template <class Result> ErrorCode code_of(const Result& result) {
