@@ -23,12 +23,8 @@ static void works(lightbin_result result) {
 
 static lightbin_result create(int ids, int depth_test, int slicing) {
     lightbin_binner* binner = NULL;
-    lightbin_binner_options options;
-    memset(&options, 0, sizeof options);
-    options.size = sizeof options;
-    options.ids = ids;
-    options.depth_test = depth_test;
-    options.slicing = slicing;
+    const lightbin_binner_options options = {
+        .size = sizeof options, .ids = ids, .depth_test = depth_test, .slicing = slicing};
     return lightbin_binner_create(&options, &binner);
 }
 
@@ -41,23 +37,16 @@ int main(void) {
     static const float projection[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2f, 0};
     static const float lights[8] = {0, 0, -5, 1, 0, 0, -1, 0.5f};
     static const float half_axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    lightbin_view_options view_options;
-    lightbin_lights given;
-    lightbin_grid grid;
+    const lightbin_view_options view_options = {
+        .size = sizeof view_options, .width = 100, .height = 100, .projection = {.floats = projection}};
+    const lightbin_threads threads = {.size = sizeof threads, .run = never};
+    const lightbin_inputs inputs = {.size = sizeof inputs, .threads = &threads};
+    lightbin_lights given = {.size = sizeof given,
+                             .spheres = {.count = 1, .centre = {.first = lights}, .radius = {.first = lights + 3}}};
+    lightbin_grid grid = {.size = sizeof grid};
     lightbin_view* view = NULL;
     lightbin_binner* binner = NULL;
     lightbin_sphere sphere;
-    memset(&view_options, 0, sizeof view_options);
-    memset(&given, 0, sizeof given);
-    memset(&grid, 0, sizeof grid);
-    view_options.size = sizeof view_options;
-    view_options.width = view_options.height = 100;
-    view_options.projection.floats = projection;
-    given.size = sizeof given;
-    given.spheres.count = 1;
-    given.spheres.centre.first = lights;
-    given.spheres.radius.first = lights + 3;
-    grid.size = sizeof grid;
     works(lightbin_view_create(&view_options, &view));
     works(lightbin_binner_create(NULL, &binner));
     works(lightbin_bin(binner, view, &given, NULL, &grid));
@@ -67,17 +56,7 @@ int main(void) {
     refuses(create(0, 1, 0), "LIGHTBIN_NO_DEPTH_TEST");
     refuses(create(0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
     refuses(create(0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
-    {
-        lightbin_inputs inputs;
-        lightbin_threads threads;
-        memset(&inputs, 0, sizeof inputs);
-        memset(&threads, 0, sizeof threads);
-        inputs.size = sizeof inputs;
-        threads.size = sizeof threads;
-        threads.run = never;
-        inputs.threads = &threads;
-        refuses(lightbin_bin(binner, view, &given, &inputs, &grid), "LIGHTBIN_NO_THREADS");
-    }
+    refuses(lightbin_bin(binner, view, &given, &inputs, &grid), "LIGHTBIN_NO_THREADS");
     given.spots.count = 1;
     given.spots.centre.first = lights;
     given.spots.radius.first = lights + 3;

@@ -2,14 +2,13 @@
 // The files of verdicts on spots and on boxes, read as an engine's tests would read them: each file is whole, and every
 // verdict is proven again. That lightbin misses no spot and no box is proven in tests/oracle, of other ones.
 #include "../../bench/exact/box.hpp"
+#include "../../bench/exact/oracle.hpp"
 #include "../../bench/exact/spot.hpp"
-#include "../../bench/exact/truth.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
@@ -21,54 +20,24 @@
 
 namespace {
 
-using oracle::FlatBall, oracle::FlatDepths;
-
 struct Proof {
     std::size_t lights = 0, verdicts = 0, met = 0, wrong = 0;
 };
 
-FlatBall flat(const oracle::CameraBall& ball) {
-    return {oracle::nearly(ball.x), oracle::nearly(ball.y), oracle::nearly(ball.depth),
-            ball.all ? HUGE_VAL : oracle::nearly(ball.radius)};
+/// A light in the exact arithmetic's form, from the numbers of a line.
+oracle::ExactSpot spot(const std::vector<float>& v) {
+    return oracle::exact_spot(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]);
+}
+oracle::ExactBox box(const std::vector<float>& v) {
+    return oracle::ExactBox({v[0], v[1], v[2], v[3], {v[4], v[5], v[6]},
+                             {{v[7], v[8], v[9]}, {v[10], v[11], v[12]}, {v[13], v[14], v[15]}}, v[16]});
 }
 
-/// A spot in the exact arithmetic's forms.
-struct Spot {
-    oracle::ExactSpot exact;
-    FlatBall ball;
-
-    Spot(const oracle::Oracle& oracle, const std::vector<float>& v)
-        : exact(oracle::exact_spot(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7])),
-          ball(flat(oracle.in_camera(exact.ball))) {}
-
-    bool surely_apart(oracle::Filter&, int, int, const FlatDepths&) const { return false; }
-};
-
-/// A box in them.
-struct Box {
-    oracle::ExactBox exact;
-    FlatBall ball;
-    oracle::FlatBox corners;
-
-    Box(const oracle::Oracle& oracle, const std::vector<float>& v)
-        : Box(oracle, oracle::BoxLight{v[0], v[1], v[2], v[3], {v[4], v[5], v[6]},
-                                       {{v[7], v[8], v[9]}, {v[10], v[11], v[12]}, {v[13], v[14], v[15]}}, v[16]}) {}
-
-    bool surely_apart(oracle::Filter& filter, int x, int y, const FlatDepths& depths) const {
-        return oracle::apart(filter, x, x + 1, y, y + 1, depths, corners);
-    }
-
-private:
-    Box(const oracle::Oracle& oracle, const oracle::BoxLight& light)
-        : exact(light), ball(flat(oracle.in_camera(exact.ball))),
-          corners(oracle::flat_box(light, [&](const oracle::Vector& at) { return oracle.in_camera({at, 0}); })) {}
-};
-
 /// Proves every verdict of a file.
-template <class Light> Proof proof_of(const std::string& path, const std::string& word_for_light) {
+template <class Read> Proof proof_of(const std::string& path, const std::string& word_for_light, const Read& read) {
     Proof proof;
     oracle::Camera camera;
-    std::unique_ptr<oracle::Truth> truth;
+    std::unique_ptr<oracle::Oracle> grid;
     int forward = 0, tiles_x = 0, tiles_y = 0;
     std::vector<oracle::Depths> layers;
 
@@ -100,38 +69,30 @@ template <class Light> Proof proof_of(const std::string& path, const std::string
             words >> forward;
             // The declaration that an orthographic matrix needs: its depth grows the other way.
             camera.reversed = camera.m[2][3] == 0 && (camera.m[2][2] > 0) != (forward > 0);
-            truth = std::make_unique<oracle::Truth>(camera);
+            grid = std::make_unique<oracle::Oracle>(camera);
         } else if (key == "grid") {
             words >> tiles_x >> tiles_y;
-            REQUIRE(truth->oracle.tiles_x() == tiles_x);
-            REQUIRE(truth->oracle.tiles_y() == tiles_y);
-            REQUIRE(truth->oracle.depth_sign() == forward);
+            REQUIRE(grid->tiles_x() == tiles_x);
+            REQUIRE(grid->tiles_y() == tiles_y);
+            REQUIRE(grid->depth_sign() == forward);
         } else if (key == "layer") {
             const float min = number(), max = number();
-            layers.push_back(truth->oracle.depths(min, max));
+            layers.push_back(grid->depths(min, max));
         } else if (key == word_for_light) {
             std::vector<float> numbers;
             for (auto n = std::count(line.begin(), line.end(), ' '); n > 1; --n)
                 numbers.push_back(number());
             words >> word;  // the verdicts, four cells a digit
-            const Light light(truth->oracle, numbers);
+            const auto light = read(numbers);
             const std::size_t tiles = static_cast<std::size_t>(tiles_x * tiles_y), cells = layers.size() * tiles;
             REQUIRE(word.size() == (cells + 3) / 4);
             for (std::size_t cell = 0; cell < cells; ++cell) {
                 const int digit = std::stoi(word.substr(cell / 4, 1), nullptr, 16);
                 const bool expected = (digit >> (3 - cell % 4) & 1) != 0;
                 const oracle::Depths& depths = layers[cell / tiles];
-                const FlatDepths flat_depths(depths);
                 const int x = static_cast<int>(cell % tiles) % tiles_x, y = static_cast<int>(cell % tiles) / tiles_x;
-                // Double precision says so of the ball, or the box, of most.
-                const bool apart = truth->filter.apart(x, x + 1, y, y + 1, flat_depths, light.ball) ||
-                                   light.surely_apart(truth->filter, x, y, flat_depths);
-                const std::optional<bool> verdict =
-                    apart ? false
-                          : std::optional<bool>(oracle::meets(
-                                truth->oracle.half_spaces(truth->oracle.columns(x, x + 1),
-                                                          truth->oracle.rows(y, y + 1), depths),
-                                light.exact));
+                const std::optional<bool> verdict = oracle::meets(
+                    grid->half_spaces(grid->columns(x, x + 1), grid->rows(y, y + 1), depths), light);
                 ++proof.verdicts, proof.met += expected, proof.wrong += verdict != expected;
             }
             ++proof.lights;
@@ -150,9 +111,9 @@ template <class Light> Proof proof_of(const std::string& path, const std::string
 }  // namespace
 
 TEST_CASE("spot verdicts: proven again") {
-    CHECK(proof_of<Spot>(VERDICTS "/verdicts.txt", "spot").wrong == 0);
+    CHECK(proof_of(VERDICTS "/verdicts.txt", "spot", spot).wrong == 0);
 }
 
 TEST_CASE("box verdicts: proven again") {
-    CHECK(proof_of<Box>(VERDICTS "/boxes.txt", "box").wrong == 0);
+    CHECK(proof_of(VERDICTS "/boxes.txt", "box", box).wrong == 0);
 }
