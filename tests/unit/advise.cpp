@@ -250,9 +250,9 @@ TEST_CASE("entries and evaluations are those of the plans' grids, of as many sid
             return given;
         };
         const Advice advice = advised(view, lights, {}, sides_of(bounds));
-        // Tiles of 8, 16, 32, 64 and 611 pixels.
+        // Tiles of 8, 16, 32, 64 and 611 pixels; masks, lists, lists of a depth test.
         CHECK(std::ranges::count(advice.plans(), true, &Plan::depth_test) == (sides > 0 ? 5 : 0));
-        CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 1);
+        CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 5 + 1);
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(plan.depth_test);
@@ -405,7 +405,7 @@ void check_verdicts(const Advice& advice) {
     for (const Plan& plan : advice.plans()) {
         std::string lines;
         const std::vector<Verdict> verdicts = advice.verdicts(plan);
-        REQUIRE(verdicts.size() == 5);
+        REQUIRE(verdicts.size() == 6);
         for (std::size_t i = 0; i < verdicts.size(); ++i) {
             const auto& [part, keep, other, instead, saved_ns] = verdicts[i];
             double least = HUGE_VAL;

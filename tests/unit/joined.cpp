@@ -1,8 +1,6 @@
 // Arrays of several kinds in one call: the grids must be those of the kinds alone, one after another in every list.
 #include "scene.hpp"
 
-#include <lightbin/encode.hpp>
-
 #include <glm/ext/matrix_transform.hpp>
 
 using namespace lightbin;

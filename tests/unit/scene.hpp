@@ -45,9 +45,6 @@ template <class Visit> void on_machine_tiers(Visit visit) {
     visit_one.template operator()<Isa::avx2>();
     visit_one.template operator()<Isa::avx512>();
 }
-inline lightbin::Isa widest_tier() {
-    return machine_tiers().back();
-}
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
 inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
