@@ -63,8 +63,8 @@ struct Tier {
     static DepthKernel depth_kernel() { return column_extremes; }
 
     template <bool depth_test, class Id, bool by_slab, LightKind kind> static BinKernel<Id> bin_kernel() {
-        if constexpr (lanes <= 4 && !depth_test)
-            return scatter_lights<Id>;  // as scatter_is_faster() says of these tiers
+        if constexpr (!depth_test && lanes <= (widest_that_scatters == Isa::scalar ? 1 : 4))
+            return scatter_lights<Id>;
         else
             return bin_blocks<depth_test, Id, by_slab, kind>;
     }
