@@ -170,7 +170,8 @@ TEST_CASE("what keeps nothing from call to call loses nothing, either") {
     const Input scene({320, 200}, 8, 300, 3);
     check_function([&] {
         std::uint64_t entries = 0;  // in any order: times differ from call to call
-        for (const Plan& plan : advise(scene.view, scene.lights, {}, scene.bounds())->plans())
+        const auto advice = advise(scene.view, scene.lights, {}, scene.bounds());
+        for (const Plan& plan : advice->plans())
             entries += plan.entries;
         return std::to_string(entries);
     });
