@@ -120,7 +120,7 @@ struct CullBytes {
 
 /// What the passes leave in the first words of `scratch`.
 struct CullTotals {
-    std::uint32_t entries;   ///< of the complete lists, else undefined; 2^32 - 1 stands for all greater numbers, too
+    std::uint32_t entries;   ///< of the complete lists, at most 2^32 - 1; undefined if there are masks
     std::uint32_t rejected;  ///< lights left out as bad input: see Sphere and Spot
     std::uint32_t visible;   ///< lights in view
     std::uint32_t lights;    ///< how many were given: with count_in_buffer, it may exceed CullRoom::lights

@@ -580,8 +580,9 @@ typedef struct lightbin_masks {
     uint32_t unused;
 } lightbin_masks;
 
-/* Makes masks in place of lists: every tile has the same lights, in memory whose size depends on the number of lights
- * in view alone. docs/tiles.md says when to use them.
+/* Makes masks in place of lists. Every tile has the same lights, in memory whose size depends on the numbers of
+ * columns, rows, z-bins and lights in view, but not on how many tiles each light covers. docs/tiles.md says when to use
+ * them.
  *
  * binner, inputs  as for lightbin_bin(); the binner has no depth test and no clusters, and threads are not used
  *
@@ -962,11 +963,11 @@ typedef struct lightbin_cull_options {
  * binding is the prefix, the buffer's name in lightbin_cull_options and, in GLSL, `_block`; that of the constants ends
  * in `grid_block`. On success *shader is to be freed with lightbin_shader_destroy().
  *
- * After project to fill, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids: the shader text of
- * lightbin_shader_snippet() reads them. No light that reaches a cell is missing in its list, and ids ascend in each.
- * Lists also have lights that do not reach the cell, a few others than the binner's: see docs/gpu.md. The same input
- * gives the same bytes on every run. If the lists have more entries than there is room for, the list of the first tile
- * that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
+ * After project to fill, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids: the shader
+ * text of lightbin_shader_snippet() reads them. No light that reaches a cell is missing in its list, and ids ascend in
+ * each. Lists also have lights that do not reach the cell, a few others than the binner's: see docs/gpu.md. The same
+ * input gives the same bytes on every run. If the lists have more entries than there is room for, the list of the first
+ * tile that does not fit is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
  *
  * After project and masks, the buffer `lists` holds what the shader text of lightbin_shader_snippet() reads with the
  * option masks: docs/gpu.md says more.
@@ -1000,7 +1001,7 @@ typedef struct lightbin_cull_plan {
 
 /* What the passes leave in the first words of `scratch`. */
 typedef struct lightbin_cull_totals {
-    uint32_t entries;  /* of the complete lists, else undefined; 2^32 - 1 stands for all greater numbers, too */
+    uint32_t entries;  /* of the complete lists, at most 2^32 - 1; undefined if there are masks */
     uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
     uint32_t visible;  /* lights in view */
     uint32_t lights;   /* how many were given: with count_in_buffer, it may exceed those that there is room for */

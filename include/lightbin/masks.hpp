@@ -10,8 +10,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Tells which lights are in which tiles by a bit mask for each column of tiles and one for each row, in which bit b of
-/// word w stands for the light ids()[32 w + b]. Each light covers a rectangle of tiles, so it is in tile (x, y) exactly if
-/// it is in column x and in row y: the lights of the tile are the bits of  column(x)[w] & row(y)[w]  for all w.
+/// word w stands for the light ids()[32 w + b]. Each light covers a rectangle of tiles, so it is in tile (x, y) exactly
+/// if it is in column x and in row y: the bits of  column(x)[w] & row(y)[w],  over all w, are the lights of the tile.
 ///
 /// A LightMasks points to memory of the MaskBinner that made it, see MaskBinner::bin().
 class LightMasks {
@@ -62,8 +62,9 @@ private:
 };
 
 /// Makes masks of the columns and rows of tiles. Every tile has the same lights as in the lists of a Binner with the
-/// default Options, in memory whose size depends on the number of lights in view alone. There is no depth test: a light
-/// that is left out of a part of its rectangle needs a list.
+/// default Options, in memory whose size depends on the numbers of columns, rows, z-bins and lights in view, but not on
+/// how many tiles each light covers. There is no depth test: a light that is left out of a part of its rectangle needs
+/// a list.
 ///
 /// A MaskBinner keeps its memory from call to call, as a Binner does. If a call throws, there are no masks, and later
 /// calls work as usual. Not thread-safe: use one MaskBinner per thread.

@@ -186,7 +186,8 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         return std::tuple<Binner<weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
     MaskBinner mask_binner(base.isa);
-    // Does with masks what `build`, below, does with lists.
+    // Builds a plan's masks and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
+    // first call also counts the words that pixels look at, and how often pixels evaluate a light.
     const auto build_masks = [&](Plan& plan, const View& grid, const auto& moved, bool first) -> std::optional<Error> {
         const bool binned = plan.slicing == Slicing::z_bins;
         const auto start = Clock::now();
@@ -214,8 +215,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         plan.evaluations *= costs.overdraw;
         return std::nullopt;
     };
-    // Builds a plan's lists and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
-    // first call also counts the list entries and how often pixels evaluate a light.
+    // Does the same with the lists of a plan, of which it counts the entries.
     const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)

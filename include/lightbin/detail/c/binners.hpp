@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that make lists and masks.
+// The functions of lightbin.h that make lists and masks.
 #pragma once
 
 #include <lightbin/binner.hpp>
@@ -156,9 +156,9 @@ inline lightbin_result check_input(bool is_read, const void* given, lightbin_err
     return refused(is_read ? if_missing : LIGHTBIN_NOT_READ, name);
 }
 
-/// Reads what a call is given, or returns why that is refused.
+/// Reads the arguments of lightbin_bin() or lightbin_bin_masks(). Returns why they are refused, or a success.
 ///
-/// masks  the call makes masks and not lists
+/// masks  whether the function is lightbin_bin_masks()
 inline lightbin_result read_call(bool masks, const lightbin_binner* binner, const lightbin_view* view,
                                  const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
                                  CallLights& lights, lightbin_inputs& inputs) {

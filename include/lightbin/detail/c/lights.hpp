@@ -79,8 +79,9 @@ template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
 /// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied before
 /// those of the next light, as they mostly lie side by side in memory.
 ///
-/// fours  whether each radius or other single float directly follows, in the caller's memory, the three floats that it
-///        follows in the C++ struct: then all four are copied at once
+/// fours  whether every radius lies directly behind its centre in the caller's memory, as it does in a Sphere, and
+///        every other single number directly behind the vector that precedes it in the C++ struct. Then the vector
+///        and the number are copied together, as four floats
 template <bool fours, class Given>
 void read_lights(const Given& from, std::size_t first, std::size_t count, typename Kind<Given>::Made* to) {
     const Given arrays = from;  // a local copy, so that compilers need not reload it after each store

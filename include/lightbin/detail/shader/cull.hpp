@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// cull_shader(): which text a pass has. The texts are in cull_project.hpp, cull_lists.hpp and cull_masks.hpp.
+// cull_shader(), which generates the text of a compute pass by the functions of cull_project.hpp, cull_lists.hpp and
+// cull_masks.hpp.
 #pragma once
 
 #include <lightbin/detail/shader/cull_lists.hpp>

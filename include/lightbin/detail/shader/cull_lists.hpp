@@ -355,8 +355,9 @@ void $run(uvec2 group, uint thread) {
 )");
 }
 
-/// Adds `total_lights`, with which one work group writes the numbers of lights of CullTotals. For each 64 lights, the
-/// pass `project` left a word with the number of rejected ones and, from bit 16 on, the number of those in view.
+/// Writes the shader function `total_lights`, with which a single work group stores CullTotals::rejected and ::visible.
+/// For each 64 lights, the pass `project` left a word with the number of rejected lights in its low 16 bits, and the
+/// number of lights in view in its high 16 bits.
 inline void add_total_lights(ShaderWriter& writer) {
     add_scan(writer);
     writer.add(R"(
@@ -372,7 +373,8 @@ void $total_lights(uint thread) {
 )");
 }
 
-/// Adds the pass `offsets`: one work group adds up what the groups of the pass `sums` wrote, and writes CullTotals.
+/// Writes the text of the pass `offsets`, in which a single work group adds up the sums that the work groups of the
+/// pass `sums` left in `scratch`, and stores CullTotals.
 inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     add_total_lights(writer);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The pass masks: from the lights' rectangles it makes what LightMasks::words() has. A light's number in the masks is
-// its position in the buffer, so sizes depend on nothing that is on the GPU.
+// The text of the compute pass `masks`, which makes the contents of LightMasks::words() out of the lights' rectangles.
+// A light's number in the masks is its position in the light buffer, so the CPU knows their size beforehand.
 #pragma once
 
 #include <lightbin/detail/shader/cull_lists.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Adds the pass masks. For each 32 lights there are invocations side by side, in groups of 128: one for their word of
-/// each column, of the empty mask and of each row, which all read the same 32 records, and one for each of their ids.
+/// Writes the text of the pass `masks`. Each invocation writes one word: that of 32 lights in the mask of a column, in
+/// the empty mask or in the mask of a row, or the id of a light. The invocations of the same 32 lights are side by
+/// side, in groups of 128, so that they read the same 32 records.
 inline void add_masks(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
