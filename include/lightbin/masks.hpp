@@ -2,8 +2,8 @@
 // MaskBinner: masks of the columns and rows of tiles, which say in a few kilobytes what the lists of all tiles say.
 #pragma once
 
-#include <lightbin/detail/depth/ranked_footprints.hpp>
 #include <lightbin/detail/engine/make_masks.hpp>
+#include <lightbin/detail/stages/ranked_footprints.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

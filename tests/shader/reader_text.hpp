@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A shader around the snippet that tells what every pixel reads, and what it is of. All but the loops, the result and the
-// entry point is written once, in the GLSL that detail/shader/writer.hpp describes, and translated to each language.
+// entry point is written once, in the GLSL that detail/shaders/writer.hpp describes, and translated to each language.
 #pragma once
 
 #include "job.hpp"

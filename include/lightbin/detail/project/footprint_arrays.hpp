@@ -126,6 +126,25 @@ struct ProjectedChunk {
     std::uint32_t fallback_count;
 };
 
+/// Stores bounds along the image axes of the part of a sphere beyond the near plane. The sphere is the centre (x, y, z),
+/// signed so that tile indices grow with x and y, and z is the view depth, and the radius: floats converted to double.
+void bounds_in_double(const Camera& camera, const double (&sphere)[4], double (&low)[2], double (&high)[2]);
+
+/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
+/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
+/// the listed lights that are in view. No tier has vectors for these few lights: see project/spheres_in_double.inl.
+///
+/// spheres  the spheres of all lights of the chunk, in view space
+void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk, ProjectCounts& counts);
+
+/// Projects in double light i of a chunk, a box for which float has no error bound, as project_in_double() does spheres.
+///
+/// ball   the sphere that cuts the box, in view space after the camera's signs
+/// given  the box as it is given
+/// to     where to store the box in view space, but for ViewBox::around; may be null
+void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball,
+                                  const Box& given, std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
+
 /// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;
