@@ -5,6 +5,7 @@
 #include "builders.hpp"
 #include "reader_text.hpp"
 
+#include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
