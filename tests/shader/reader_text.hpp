@@ -258,3 +258,13 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
                                bool multiview = false) {
     return ReaderText(options, stage, width, height, multiview).around(snippet.text);
 }
+
+/// What a compute shader writes.
+inline Input result_input(std::size_t bytes) {
+    using namespace lightbin;
+    Input result;
+    result.binding = {
+        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
+    result.bytes.resize(bytes, std::byte{0xee});
+    return result;
+}

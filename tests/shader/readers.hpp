@@ -173,16 +173,6 @@ inline void fit_texture(Input& input, int tiles_x) {
     input.bytes.resize(row * input.height, std::byte{0xee});
 }
 
-/// What a compute shader writes.
-inline Input result_input(std::size_t bytes) {
-    using namespace lightbin;
-    Input result;
-    result.binding = {
-        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
-    result.bytes.resize(bytes, std::byte{0xee});
-    return result;
-}
-
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
 /// unset      the constants of the grid are 0: no pixel has lights
 /// multiview  the views are drawn at once
