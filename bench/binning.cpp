@@ -13,7 +13,6 @@
 #include "pool.hpp"
 #include "sources.hpp"
 #include "spots_sets.hpp"
-#include "tiers.hpp"
 #include "turns.hpp"
 #include "world.hpp"
 
@@ -94,10 +93,10 @@ Set<Frame> field_set(const std::string& name, float median, std::size_t count) {
     return made_set(name, count, [=](std::size_t n, std::uint32_t seed) { return field(n, median, seed); });
 }
 
-void add_result(const std::string& name, const Options& options, const char* to, const Turns& turns,
+void add_result(const std::string& name, Isa isa, const char* to, const Turns& turns,
                 std::size_t of, std::size_t other, std::size_t lights) {
     const double count = double(std::max<std::size_t>(lights, 1));
-    results.push_back({name, to_string(options.isa), to, turns.ratio(of, other), turns.spread(of, other),
+    results.push_back({name, to_string(isa), to, turns.ratio(of, other), turns.spread(of, other),
                        1e9 * turns.seconds_a_frame(of) / count, turns.made_a_frame(of) / count});
 }
 
@@ -108,11 +107,11 @@ void check_same_length(const std::string& name, std::size_t ours, std::size_t th
                                  text(": %zu entries, and %zu of what it is held against", ours, theirs));
 }
 
-/// Adds a case for each instruction set that this machine has: time.operator()<options with that set>(name).
-template <Options options, class Time> void add_cases(const std::string& name, Time time) {
-    each_tier<options>([&]<Options one>() {
-        cases.push_back({name + "/" + to_string(one.isa), [=] { time.template operator()<one>(name); }});
-    });
+/// Adds a case for each instruction set that this machine has, from `least` on: time(name, isa).
+template <class Time> void add_cases(const std::string& name, Time time, Isa least = Isa::scalar) {
+    for (const Isa isa : {Isa::scalar, Isa::simd128, Isa::avx2, Isa::avx512})
+        if (isa >= least && lightbin::machine_isa(isa) == isa)
+            cases.push_back({name + "/" + to_string(isa), [=] { time(name, isa); }});
 }
 
 /// The processor time that this thread takes for some work.
@@ -164,10 +163,10 @@ struct FrameViews {
 
 /// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million lights against
 /// reading them.
-template <Options options> void time_build(const std::string& name, const Set<Frame>& set, int tile_size) {
+template <Options options> void time_build(const std::string& name, Isa isa, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const FrameViews views(frames, tile_size);
-    Build<options> build(tile_size);
+    Build<options> build(tile_size, isa);
     Flat<float> flat;
     std::vector<char> table(sizeof(lightbin::ListRange) * views.views[0].tile_count());
     std::vector<Work<Frame>> works = {
@@ -187,17 +186,17 @@ template <Options options> void time_build(const std::string& name, const Set<Fr
         });
     if (!options.depth_test) check_same_length(name, works[0](frames[0]), works[1](frames[0]));
     const Turns turns = take_turns(frames, seconds_a_case, works);
-    add_result(name, options, "flat", turns, 0, 1, set.lights);
-    add_result(name, options, "clearing", turns, 0, 2, set.lights);
-    if (works.size() > 3) add_result(name, options, "reading", turns, 0, 3, set.lights);
+    add_result(name, isa, "flat", turns, 0, 1, set.lights);
+    add_result(name, isa, "clearing", turns, 0, 2, set.lights);
+    if (works.size() > 3) add_result(name, isa, "reading", turns, 0, 3, set.lights);
 }
 
 /// How many times as fast threads are as one, where none waits for a core.
 template <Options options>
-void time_threads(const std::string& name, const Set<Frame>& set, std::size_t threads) {
+void time_threads(const std::string& name, Isa isa, const Set<Frame>& set, std::size_t threads) {
     const std::vector<Frame>& frames = set.frames();
     const lightbin::View view = Lens().view(usual_tile_size(options));
-    Build<options> build(usual_tile_size(options));
+    Build<options> build(usual_tile_size(options), isa);
     Steps steps(threads);
     std::vector<double> alone, together;
     const double end = time_now() + seconds_a_case;
@@ -210,11 +209,11 @@ void time_threads(const std::string& name, const Set<Frame>& set, std::size_t th
         });
         (several ? together : alone).push_back(own + steps.longest);
     }
-    results.push_back({name, to_string(options.isa), "one", median(alone) / median(together), 0});
+    results.push_back({name, to_string(isa), "one", median(alone) / median(together), 0});
 }
 
 /// Clusters against the baseline, z-bins against the same build without them.
-template <Options options> void time_slices(const std::string& name, const Set<Frame>& set) {
+template <Options options> void time_slices(const std::string& name, Isa isa, const Set<Frame>& set) {
     constexpr bool clusters = options.slicing == Slicing::clusters;
     constexpr Options without = [] {
         Options plain = options;
@@ -224,8 +223,8 @@ template <Options options> void time_slices(const std::string& name, const Set<F
     const std::vector<Frame>& frames = set.frames();
     const lightbin::View view = Lens().view(usual_tile_size(options));
     const FlatView flat_view = Lens().flat_view(32);
-    Build<options> build(usual_tile_size(options));
-    Build<without> plain(usual_tile_size(options));
+    Build<options> build(usual_tile_size(options), isa);
+    Build<without> plain(usual_tile_size(options), isa);
     Flat<float> flat;
     const Work<Frame> ours = [&](const Frame&frame) { return build(view, frame.lights); },
                       theirs = [&](const Frame&frame) {
@@ -233,18 +232,18 @@ template <Options options> void time_slices(const std::string& name, const Set<F
                           flat.build<false>(flat_view, frame.lights, nullptr, nullptr);
                           return flat.indices.size();
                       };
-    add_result(name, options, clusters ? "flat" : "none", take_turns(frames, seconds_a_case, {ours, theirs}),
+    add_result(name, isa, clusters ? "flat" : "none", take_turns(frames, seconds_a_case, {ours, theirs}),
                0, 1, set.lights);
 }
 
 /// Masks of columns and rows against the baseline and the lists, and with z-bins against those without.
-template <Options options> void time_masks(const std::string& name, const Set<Frame>& set, int tile_size) {
+void time_masks(const std::string& name, Isa isa, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const lightbin::View view = Lens().view(tile_size);
     const FlatView flat_view = Lens().flat_view(tile_size);
     const lightbin::Slices slices = z_bin_slices();
-    lightbin::MaskBinner masks(options.isa), with_bins(options.isa);
-    Build<options> build(tile_size);
+    lightbin::MaskBinner masks(isa), with_bins(isa);
+    Build<Options{}> build(tile_size, isa);
     Flat<float> flat;
     const std::vector<Work<Frame>> works = {
         [&](const Frame& frame) { return masks.bin(view, frame.lights)->words().size(); },
@@ -255,16 +254,16 @@ template <Options options> void time_masks(const std::string& name, const Set<Fr
             return flat.indices.size();
         }};
     const Turns turns = take_turns(frames, 2 * seconds_a_case, works);
-    add_result(name, options, "flat", turns, 0, 3, set.lights);
-    add_result(name, options, "lists", turns, 0, 2, set.lights);
-    add_result(name + "/z_bins", options, "masks", turns, 1, 0, set.lights);
+    add_result(name, isa, "flat", turns, 0, 3, set.lights);
+    add_result(name, isa, "lists", turns, 0, 2, set.lights);
+    add_result(name + "/z_bins", isa, "masks", turns, 1, 0, set.lights);
 }
 
 /// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so
 /// that none finds its lights where another one left them in the cache.
-template <Options options> void time_sources(const std::string& name, const Set<WorldFrame>& set) {
+void time_sources(const std::string& name, Isa isa, const Set<WorldFrame>& set) {
     const std::vector<WorldFrame>& frames = set.frames();
-    SourceBuilds<options> builds(frames[0].view.lens, 32);
+    SourceBuilds builds(frames[0].view.lens, 32, isa);
     std::vector<Work<WorldFrame>> works;
     const int sources = frames[0].structs.empty() ? view_structs : world_structs + 1;
     for (int i = 0; i < sources; ++i) {
@@ -274,7 +273,7 @@ template <Options options> void time_sources(const std::string& name, const Set<
     }
     const Turns turns = take_turns(frames, seconds_a_case * sources, works, true);
     const auto add = [&](std::size_t of, std::size_t to) {
-        add_result(name + "/" + source_names[of], options, source_names[to], turns, of, to, set.lights);
+        add_result(name + "/" + source_names[of], isa, source_names[to], turns, of, to, set.lights);
     };
     for (std::size_t source = 0; source < works.size(); ++source)
         add(source, view_vec4s);
@@ -283,19 +282,19 @@ template <Options options> void time_sources(const std::string& name, const Set<
 
 /// Spots or boxes against as many spheres whose lists are as long, and boxes against such spots.
 template <Options options, class Light>
-void time_kind(const std::string& name, const Set<KindFrame<Light>>& set) {
+void time_kind(const std::string& name, Isa isa, const Set<KindFrame<Light>>& set) {
     using OneFrame = KindFrame<Light>;
     const lightbin::View view = Lens().view(usual_tile_size(options));
     const std::vector<OneFrame>& frames = set.frames();
-    Build<options> build(usual_tile_size(options));
+    Build<options> build(usual_tile_size(options), isa);
     const auto of = [&](auto member) {
         return [&, member](const OneFrame& frame) { return build(view, frame.*member); };
     };
     std::vector<Work<OneFrame>> works = {of(&OneFrame::lights), of(&OneFrame::spheres)};
     if (!frames[0].spots.empty()) works.push_back(of(&OneFrame::spots));
     const Turns turns = take_turns(frames, seconds_a_case, works);
-    add_result(name, options, "spheres", turns, 0, 1, set.lights);
-    if (works.size() > 2) add_result(name, options, "spots", turns, 0, 2, set.lights);
+    add_result(name, isa, "spheres", turns, 0, 1, set.lights);
+    if (works.size() > 2) add_result(name, isa, "spots", turns, 0, 2, set.lights);
 }
 
 constexpr const char* name_of(bool depth_test) {
@@ -303,23 +302,17 @@ constexpr const char* name_of(bool depth_test) {
 }
 
 template <Options options = Options{}> void add_builds(const Set<Frame>& set, int tile_size) {
-    add_cases<options>(set.full_name() + text("/%dpx/", tile_size) + name_of(options.depth_test),
-                       [=]<Options one>(const std::string& name) { time_build<one>(name, set, tile_size); });
+    add_cases(set.full_name() + text("/%dpx/", tile_size) + name_of(options.depth_test),
+              [=](const std::string& name, Isa isa) { time_build<options>(name, isa, set, tile_size); });
 }
 
-/// On the two widest instruction sets.
+/// With AVX2 and wider.
 template <Options options = Options{}> void add_threads(const Set<Frame>& set) {
     for (const std::size_t threads : {2u, 4u, 8u, 16u}) {
         const std::string name = set.full_name() + "/" + to_string(options.slicing) + "/" +
                                  name_of(options.depth_test) + text("/%zu threads", threads);
-        const auto add = [&]<Options one>() {
-            cases.push_back(
-                {name + "/" + to_string(one.isa), [=] { time_threads<one>(name, set, threads); }});
-        };
-#if defined(LIGHTBIN_X86)
-        visit_tier<with(options, Isa::avx2)>(add);
-#endif
-        visit_tier<options>(add);
+        add_cases(name, [=](const std::string& one, Isa isa) { time_threads<options>(one, isa, set, threads); },
+                  Isa::avx2);
     }
 }
 
@@ -360,9 +353,9 @@ void add_scene(const std::string& path) {
 
 /// Clusters and z-bins of the field sets.
 template <Slicing slicing, bool depth_test = false> void add_slices(const Set<Frame>& set) {
-    add_cases<Options{.depth_test = depth_test, .slicing = slicing}>(
-        "slices/" + set.full_name() + "/" + to_string(slicing) + "/" + name_of(depth_test),
-        [=]<Options one>(const std::string& name) { time_slices<one>(name, set); });
+    constexpr Options options = {.depth_test = depth_test, .slicing = slicing};
+    add_cases("slices/" + set.full_name() + "/" + to_string(slicing) + "/" + name_of(depth_test),
+              [=](const std::string& name, Isa isa) { time_slices<options>(name, isa, set); });
 }
 
 void add_all_slices(bool quick) {
@@ -382,14 +375,14 @@ void add_masks() {
     for (const std::size_t n : {64u, 256u, 1000u, 2000u, 10000u})
         for (const int tile_size : {32, 16}) {
             const Set<Frame> set = field_set("field20", field20_median, n);
-            add_cases<Options{}>("masks/" + set.full_name() + text("/%dpx", tile_size),
-                                 [=]<Options one>(const std::string& name) { time_masks<one>(name, set, tile_size); });
+            add_cases("masks/" + set.full_name() + text("/%dpx", tile_size),
+                      [=](const std::string& name, Isa isa) { time_masks(name, isa, set, tile_size); });
         }
 }
 
 void add_sources(const Set<WorldFrame>& set) {
-    add_cases<Options{}>("sources/" + set.name,
-                         [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
+    add_cases("sources/" + set.name,
+              [=](const std::string& name, Isa isa) { time_sources(name, isa, set); });
 }
 
 /// How to make the frame of a seed of a set of spots or boxes.
@@ -411,8 +404,7 @@ template <Options options, class Light> void add_kind(const KindSet<Light>& kind
                                                frames_in_turn(kind.lights, kind.make),
                                                [&](const auto& lights) { return build(view, lights); });
                                        }};
-    add_cases<options>(name,
-                       [=]<Options one>(const std::string& full_name) { time_kind<one>(full_name, set); });
+    add_cases(name, [=](const std::string& full_name, Isa isa) { time_kind<options>(full_name, isa, set); });
 }
 
 void add_all_spots(bool quick) {

@@ -15,9 +15,9 @@ constexpr int usual_tile_size(const lightbin::Options& options) {
 
 template <lightbin::Options options> class Build {
 public:
-    explicit Build(int tile_size)
+    explicit Build(int tile_size, lightbin::Isa isa = lightbin::compiled_isa)
         : made_(tile_size),
-          slices_(options.slicing == lightbin::Slicing::clusters ? cluster_slices() : z_bin_slices()) {}
+          slices_(options.slicing == lightbin::Slicing::clusters ? cluster_slices() : z_bin_slices()), binner_(isa) {}
 
     /// The grid of some lights, valid until the next call.
     template <class AnyLights>

@@ -26,9 +26,10 @@ inline constexpr const char* source_names[] = {"view_vec4s", "world_vec4s", "loo
 }
 
 /// Builds one frame's lists from each form of its lights.
-template <lightbin::Options options> class SourceBuilds {
+class SourceBuilds {
 public:
-    SourceBuilds(const Lens& lens, int tile_size) : view_(lens.view(tile_size)), build_(tile_size) {}
+    SourceBuilds(const Lens& lens, int tile_size, lightbin::Isa isa)
+        : view_(lens.view(tile_size)), build_(tile_size, isa) {}
 
     std::size_t operator()(Source source, const WorldFrame& frame) {
         switch (source) {
@@ -49,6 +50,6 @@ public:
 
 private:
     lightbin::View view_;
-    Build<options> build_;
+    Build<lightbin::Options{}> build_;
     Lights moved_;
 };

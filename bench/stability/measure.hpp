@@ -378,7 +378,7 @@ private:
         std::vector<lightbin::View> views;
         for (const Scene& scene : scenes)
             views.push_back(view_of(scene));
-        lightbin::Footprints footprints;
+        lightbin::detail::Footprints footprints;
         result_.ours.ns = time(scenes, [&](const Scene& scene) {
             with_lights(scene, [&](const auto& lights) {
                 footprints.project(lightbin::machine_isa(),

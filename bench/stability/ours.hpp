@@ -36,7 +36,7 @@ template <class Use> auto with_lights(const Scene& scene, Use use) {
 
 inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, const Scene& scene) {
     return with_lights(scene, [&](const auto& lights) {
-        lightbin::Footprints footprints;
+        lightbin::detail::Footprints footprints;
         footprints.project(isa, view, lights, {}, lightbin::detail::Kept::lights);
         const auto& arrays = footprints.arrays();
         Projected all;

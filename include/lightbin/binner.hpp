@@ -62,10 +62,11 @@ template <Options options = Options{}> class Binner {
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
     using Inputs = lightbin::Inputs<options.depth_test, options.slicing>;
-    /// The format of the grids, to give to ShaderOptions::format for a shader that reads them.
+    /// The format of the grids, to give to SnippetOptions::format for a shader that reads them.
     static constexpr ListFormat list_format = {.ids = options.ids};
 
-    Binner() = default;
+    /// isa  the widest instruction set to use, even where the machine has a wider one. The result is the same.
+    explicit Binner(Isa isa = compiled_isa) : isa_(isa) {}
     /// Takes over the memory and the grid of `other`, which is then like a new Binner.
     Binner(Binner&& other) = default;
     Binner& operator=(Binner&& other) = default;
@@ -81,16 +82,17 @@ public:
     /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell.
     /// Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
     /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
-    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
+    template <class LightRange, std::convertible_to<Parallel> Threads = detail::Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
         const Slices* slices = nullptr;
         if constexpr (Inputs::reads_slices) slices = &static_cast<const Slices&>(inputs.slices);
-        return stages_.template bin<Id>(How(), view, detail::as_lights(lights), slices, inputs.bounds, threads);
+        return stages_.template bin<Id>(How(), isa_, view, detail::as_lights(lights), slices, inputs.bounds, threads);
     }
 
 private:
     using How = detail::FixedHow<options>;
+    Isa isa_;
     detail::Stages<How> stages_;
 };
 

@@ -21,7 +21,7 @@ struct LightCoverage {
     /// plane and beyond its far plane.
     float nearest, farthest;
     /// The light's size in the image, in pixels: the larger side of the rectangle around the projection of its sphere,
-    /// or of a spot's least_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In a
+    /// or of a spot's bounding_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In a
     /// perspective view it is the size of the part beyond the near plane. It is +inf where no finite bound is known, as
     /// with an infinite radius.
     float pixels;
@@ -40,8 +40,8 @@ inline float enlarged(float radius, float by) {
     return float_above(static_cast<double>(radius) + static_cast<double>(by));
 }
 
-/// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of least_sphere() or
-/// bounding_sphere(), enlarged by how far the light can reach outside of the spot or box that was rounded to float.
+/// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of bounding_sphere(),
+/// enlarged by how far the light can reach outside of the spot or box that was rounded to float.
 template <LightKind kind> LightExtent extent_of(const Camera& camera, const ViewLights& lights, std::uint32_t id) {
     if constexpr (kind == LightKind::mixed) {
         const LightKind own_kind = lights.kind_of(id);
@@ -63,8 +63,8 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
             corners.radius = enlarged(corners.radius, light.tolerance);
             if (corners.radius < sphere.radius) sphere = corners;
         } else if (light.tolerance > 0) {
-            sphere = least_sphere({sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z,
-                                   light.cosine});
+            sphere = bounding_sphere(Spot{sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y,
+                                          light.axis_z, light.cosine});
             sphere.radius = enlarged(sphere.radius, light.tolerance);
         }
         return {sphere, light.nearest, light.farthest};
@@ -99,13 +99,13 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
 /// isa              use no wider instructions than these. The result does not depend on it.
 ///
 /// Errors: more than 2^32 - 1 lights; a world_space() matrix that is not affine.
-template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
+template <class LightRange, std::convertible_to<Parallel> Threads = detail::Serial>
 Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& lights, const Threads& threads = {},
                                             Isa isa = compiled_isa) {
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
     const detail::DefaultFloatEnvironment environment;
-    Footprints footprints;
+    detail::Footprints footprints;
     footprints.project(machine_isa(isa), view, source, threads, detail::Kept::lights);
     std::vector<LightCoverage> found(footprints.visible());
     const std::span<const detail::FootprintRun> runs = footprints.runs();

@@ -8,18 +8,20 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
+namespace detail {
+
 /// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere, a
 /// Spot or a Box of an element, and for world_space() the transform to view space.
 template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
     ToLight to_light;
-    std::optional<detail::WorldToView> to_view;
+    std::optional<WorldToView> to_view;
 
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
-    static constexpr detail::LightKind kind = detail::kind_of<detail::MadeBy<ToLight, Light>>;
+    static constexpr LightKind kind = kind_of<MadeBy<ToLight, Light>>;
 
-    using Made = std::conditional_t<kind == detail::LightKind::box, Box,
-                                    std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
+    using Made = std::conditional_t<kind == LightKind::box, Box,
+                                    std::conditional_t<kind == LightKind::spot, Spot, Sphere>>;
 
     /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
     Made made(const Light& light) const { return static_cast<Made>(to_light(light)); }
@@ -35,12 +37,12 @@ template <class Light, class ToLight> struct Lights {
     const void* as_they_are() const {
         if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
             return array.data();
-        } else if constexpr (std::is_same_v<ToLight, AsLight> && kind == detail::LightKind::sphere &&
+        } else if constexpr (std::is_same_v<ToLight, AsLight> && kind == LightKind::sphere &&
                              sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
             if (array.empty()) return nullptr;
             if constexpr (std::is_base_of_v<Sphere, Light>) {
                 return array.data();
-            } else if constexpr (!std::convertible_to<const Light&, Sphere> && detail::Vec4<Light>) {
+            } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4<Light>) {
                 const void* const first_byte = array.data();
                 const float* const numbers = static_cast<const float*>(first_byte);
                 const Light& first = array.front();
@@ -61,7 +63,7 @@ template <class Light, class ToLight> struct Lights {
     /// Returns the Sphere, Spot or Box, in view space, of an array element. The axis of a Spot, and the centre and the
     /// half axes of a Box, are rounded to nearest, not outward.
     auto view_light(const Light& light) const {
-        if constexpr (kind == detail::LightKind::box) {
+        if constexpr (kind == LightKind::box) {
             const Box box = made(light);
             if (!to_view) return box;
             const Sphere ball = (*to_view)(Sphere{box.x, box.y, box.z, box.radius}),
@@ -72,7 +74,7 @@ template <class Light, class ToLight> struct Lights {
                 std::memcpy(moved.half_axes[i], &image, sizeof moved.half_axes[i]);
             }
             return moved;
-        } else if constexpr (kind == detail::LightKind::spot) {
+        } else if constexpr (kind == LightKind::spot) {
             const Spot spot = made(light);
             if (!to_view) return spot;
             const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
@@ -84,19 +86,21 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
+}  // namespace detail
+
 /// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where
 /// it is, so it must live until the Binner's call returns: a temporary array is refused by a compile error, unless it is
 /// a std::span or another range that only refers to elements (std::ranges::borrowed_range).
 ///
 /// lights    a contiguous range of any type
 /// to_light  a callable that makes a Sphere, a Spot or a Box of an element. It is copied, and called as const
-template <class Range, class ToLight = AsLight>
+template <class Range, class ToLight = detail::AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
     static_assert(std::is_lvalue_reference_v<Range> || std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
                   "lightbin: these lights are gone after the expression: give the array a name that lives on");
     const auto array = detail::checked_array(lights);
     const auto checked = detail::checked_to_light<typename decltype(array)::value_type>(to_light);
-    return Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{array, checked, {}};
+    return detail::Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{array, checked, {}};
 }
 
 /// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and enlarged by a
@@ -104,22 +108,22 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
 ///
 /// lights, to_light  as for view_space()
 /// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine. If it is so far from a
-///                   rotation and uniform scale that it would distort cones, spots become their least_sphere().
-template <class Range, class ViewMatrix, class ToLight = AsLight>
+///                   rotation and uniform scale that it would distort cones, spots become their bounding_sphere().
+template <class Range, class ViewMatrix, class ToLight = detail::AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);
     result.to_view = detail::WorldToView(detail::to_matrix(view_matrix));
     return result;
 }
 
+namespace detail {
+
 /// What lights() returns: several arrays of lights, each of another kind.
 template <class First, class Rest> struct JoinedLights {
     First first;
     Rest rest;
-    static constexpr detail::LightKind kind = detail::LightKind::mixed;
+    static constexpr LightKind kind = LightKind::mixed;
 };
-
-namespace detail {
 
 /// Returns the Lights that a call was given. A plain range is taken for vec4s, Spheres, Spots or Boxes in view space.
 template <class Range> auto as_lights(const Range& lights) {
@@ -189,7 +193,7 @@ template <class First, class Second> auto lights(First&& first, Second&& second)
     using Other = decltype(other);
     static_assert(detail::first_kind(static_cast<One*>(nullptr)) < detail::first_kind(static_cast<Other*>(nullptr)),
                   "lightbin: lights() takes Spheres, Spots and Boxes in this order, and one array of each kind");
-    return JoinedLights<One, Other>{one, other};
+    return detail::JoinedLights<One, Other>{one, other};
 }
 template <class First, class Second, class Third> auto lights(First&& first, Second&& second, Third&& third) {
     return lights(static_cast<First&&>(first), lights(static_cast<Second&&>(second), static_cast<Third&&>(third)));

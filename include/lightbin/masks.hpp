@@ -138,8 +138,8 @@ private:
     }
 
     Isa isa_;
-    Footprints footprints_;
-    RankedFootprints ranked_;
+    detail::Footprints footprints_;
+    detail::RankedFootprints ranked_;
     detail::Buffer<std::uint32_t> words_;
 };
 

@@ -2,7 +2,6 @@
 // The options of a Binner. They are template arguments, so an option that is off leaves no code in the program.
 #pragma once
 
-#include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
@@ -29,8 +28,6 @@ struct Options {
     /// tile's frustum between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters.
     bool depth_test = false;
     Slicing slicing = Slicing::none;
-    /// The widest instruction set to use, even where the machine has a wider one. The result is the same.
-    Isa isa = compiled_isa;
 };
 
 }}  // namespace lightbin

@@ -73,9 +73,13 @@ private:
     void (*start_)(CallersRun callers, std::size_t n, Body body) = nullptr;
 };
 
+namespace detail {
+
 /// Does all work on the calling thread, which is known at compile time, so that no code for sharing work is compiled.
 struct Serial {
     operator Parallel() const { return {}; }
 };
+
+}  // namespace detail
 
 }}  // namespace lightbin

@@ -50,7 +50,7 @@ void mistake() {
 #elif MISTAKE == 4  // this Binner's depth test needs Z bounds: bin.view, lights, ..bounds =
     (void)tested.bin(*view, lights);
 #elif MISTAKE == 5  // this Binner's depth test needs Z bounds
-    (void)tested.bin(*view, lights, {}, lightbin::Serial());
+    (void)tested.bin(*view, lights, {});
 #elif MISTAKE == 6  // this Binner does not read this input: bounds want an Options::depth_test
     (void)binner.bin(*view, lights, {.bounds = lightbin::ZBounds()});
 #elif MISTAKE == 7  // a Binner's ids have 16 or 32 bits

@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -139,10 +140,11 @@ template <class Call> auto with_lights(const Scene& scene, Call call) {
 }
 
 /// Bins with a Binner that lives on from call to call, unless its grid is large.
-template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& input) {
-    static std::unique_ptr<lightbin::Binner<options>> binner;
+template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& input, Isa isa) {
+    static std::map<Isa, std::unique_ptr<lightbin::Binner<options>>> binners;
+    std::unique_ptr<lightbin::Binner<options>>& binner = binners[isa];
     Random random(input.seed);
-    if (!binner || random.one_in(8)) binner = std::make_unique<lightbin::Binner<options>>();
+    if (!binner || random.one_in(8)) binner = std::make_unique<lightbin::Binner<options>>(isa);
     const bool backward = random.coin();
     const auto runner = [&](std::size_t n, const auto& body) {  // on this thread, from either end
         for (std::size_t i = 0; i < n; ++i)
@@ -163,9 +165,10 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
 }
 
 /// The same of masks: a tile's list has the lights that both its column and its row have.
-template <Slicing slicing, Isa isa> lightbin::Result<Grid> bin_masks(const Input& input) {
+template <Slicing slicing> lightbin::Result<Grid> bin_masks(const Input& input, Isa isa) {
     constexpr bool ranked = slicing == Slicing::z_bins;
-    static lightbin::MaskBinner binner(isa);
+    static std::map<Isa, lightbin::MaskBinner> binners;
+    lightbin::MaskBinner& binner = binners.try_emplace(isa, isa).first->second;
     const auto masks = with_lights(input.scene, [&](const auto& lights) {
         return ranked ? binner.bin(input.view, lights, input.slices) : binner.bin(input.view, lights);
     });
@@ -190,29 +193,22 @@ template <Slicing slicing, Isa isa> lightbin::Result<Grid> bin_masks(const Input
     return out;
 }
 
-/// A Binner's options, or masks, compiled for each instruction set.
+/// A Binner's options, or masks.
 struct BinnerKind {
     std::string name;
     bool depth_test;
     Slicing slicing;
-    lightbin::Result<Grid> (*bins[4])(const Input&);
+    lightbin::Result<Grid> (*bin_on)(const Input&, Isa);
     std::uint64_t points = 0;  ///< that were looked for
 
     template <bool depth_test, Slicing slicing> static BinnerKind of() {
-        constexpr auto on = [](Isa isa) {
-            return lightbin::Options{.depth_test = depth_test, .slicing = slicing, .isa = isa};
-        };
         return {std::string(depth_test ? "depth test, " : "") + to_string(slicing),
                 depth_test,
                 slicing,
-                {bin<on(Isa::scalar)>, bin<on(Isa::simd128)>, bin<on(Isa::avx2)>, bin<on(lightbin::compiled_isa)>}};
+                bin<lightbin::Options{.depth_test = depth_test, .slicing = slicing}>};
     }
     template <Slicing slicing> static BinnerKind of_masks() {
-        return {std::string("masks, ") + to_string(slicing),
-                false,
-                slicing,
-                {bin_masks<slicing, Isa::scalar>, bin_masks<slicing, Isa::simd128>, bin_masks<slicing, Isa::avx2>,
-                 bin_masks<slicing, lightbin::compiled_isa>}};
+        return {std::string("masks, ") + to_string(slicing), false, slicing, bin_masks<slicing>};
     }
 };
 
@@ -268,7 +264,7 @@ private:
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
-                lightbin::Footprints rectangles;
+                lightbin::detail::Footprints rectangles;
                 rectangles.project(lightbin::machine_isa(), *view_, lightbin::detail::as_lights(lights), {});
                 return rectangles.area();
             });
@@ -311,14 +307,15 @@ private:
             make_slices(placed_, few ? random_.from_to(1, 5) : random_.pick({1, 2, 7, 24, 65, 1024}), random_);
         if (clusters && view_->tile_count() * static_cast<std::size_t>(slices.count()) > 1'000'000) return;
         const auto binned = [&](int tier) {
-            return kind.bins[tier]({*view_, scene_, bounds_, slices, random_.bits()});
+            constexpr Isa tiers[] = {Isa::scalar, Isa::simd128, Isa::avx2, lightbin::compiled_isa};
+            return kind.bin_on({*view_, scene_, bounds_, slices, random_.bits()}, tiers[tier]);
         };
         const int first = random_.below(4);
         const auto grid = binned(first);
         if (!grid) {
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries &&
-                grid.error().code != ErrorCode::too_many_list_places)
+                grid.error().code != ErrorCode::too_many_pairs)
                 fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
             return;
         }

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,17 +45,12 @@ public:
 
     template <bool depth_test> void judge() {
         using lightbin::Isa;
-        constexpr auto on = [](Isa isa) { return lightbin::Options{.depth_test = depth_test, .isa = isa}; };
-        const Lists lists = built<on(Isa::scalar)>();
-        // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
-        const auto compare = [&]<Isa isa>() {
-            if (lightbin::machine_isa(isa) == isa && built<on(isa)>() != lists)
+        const Lists lists = built<depth_test>(Isa::scalar);
+        // An Isa is a cap: one that the machine lacks would be a narrower one again.
+        for (const Isa isa : {Isa::simd128, Isa::avx2, Isa::avx512})
+            if (lightbin::machine_isa(isa) == isa && built<depth_test>(isa) != lists)
                 complain(to_string(isa) + std::string(" differs"));
-        };
-        compare.template operator()<Isa::simd128>();
-        compare.template operator()<Isa::avx2>();
-        compare.template operator()<Isa::avx512>();
-        if (built<lightbin::Options{.depth_test = depth_test}>(3) != lists) complain("with 3 workers it differs");
+        if (built<depth_test>(lightbin::compiled_isa, 3) != lists) complain("with 3 workers it differs");
 
         if (lists.rejected != rejected_of(scene_.lights)) complain("bad lights are miscounted");
         std::vector<bool> in(lists.ranges.size() * scene_.lights.size());
@@ -154,8 +150,10 @@ private:
         bool operator==(const Lists&) const = default;
     };
 
-    template <lightbin::Options options> Lists built(std::size_t workers = 1) {
-        thread_local lightbin::Binner<options> binner;
+    template <bool depth_test> Lists built(lightbin::Isa isa, std::size_t workers = 1) {
+        constexpr lightbin::Options options = {.depth_test = depth_test};
+        thread_local std::map<lightbin::Isa, lightbin::Binner<options>> binners;
+        lightbin::Binner<options>& binner = binners.try_emplace(isa, isa).first->second;
         // The caller's threads at their least helpful: one of them, which takes the work from the end.
         auto run = [](std::size_t n, auto body) {
             while (n > 0)

@@ -30,7 +30,7 @@ TEST_CASE("lights that are moved in doubles are the same on every tier where the
             const auto world = world_space(lights, matrix(low * (1 + step * 0x1p-52)));
             std::vector<float> radii;
             for (const Isa isa : test::machine_tiers()) {
-                Footprints footprints;
+                detail::Footprints footprints;
                 footprints.project(isa, view, world, {}, detail::Kept::lights);
                 radii.push_back(footprints.arrays().view_lights.spheres[0].radius);
             }

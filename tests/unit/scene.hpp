@@ -33,21 +33,8 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
     }();
     return tiers;
 }
-/// Calls visit.operator()<isa>() with each. A Binner takes an Isa that the machine lacks for a narrower one, so that it is
-/// not worth a visit.
-template <class Visit> void on_machine_tiers(Visit visit) {
-    using lightbin::Isa;
-    const auto visit_one = [&]<Isa isa>() {
-        if (lightbin::machine_isa(isa) == isa) visit.template operator()<isa>();
-    };
-    visit_one.template operator()<Isa::scalar>();
-    visit_one.template operator()<Isa::simd128>();
-    visit_one.template operator()<Isa::avx2>();
-    visit_one.template operator()<Isa::avx512>();
-}
-
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
-inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
+inline lightbin::View view(lightbin::ImageSize viewport, int tile_size) {
     const float aspect =
         viewport.height > 0 ? static_cast<float>(viewport.width) / static_cast<float>(viewport.height) : 1.0f;
     const glm::mat4 projection = glm::perspectiveRH_NO(1.0471976f, aspect > 0 ? aspect : 1.0f, 0.1f, 1000.0f);
@@ -122,7 +109,7 @@ template <class Id> Lists to_lists(const lightbin::LightGrid<Id>& grid) {
     return lists;
 }
 
-template <lightbin::Options options = lightbin::Options{}, class Lights, class Threads = lightbin::Serial>
+template <lightbin::Options options = lightbin::Options{}, class Lights, class Threads = lightbin::detail::Serial>
 Lists lists(const lightbin::View& view, const Lights& lights, const lightbin::ZBounds& bounds = {},
             const Threads& threads = {}) {
     lightbin::Binner<options> binner;
@@ -165,10 +152,10 @@ inline lightbin::ZBounds some_bounds(const lightbin::View& view, std::vector<flo
 /// Returns the lists of ids of a grid, with z-bins those of the ranks, sorted. Its bounds are some_bounds().
 template <lightbin::Options options, class LightRange>
 Lists id_lists(const lightbin::View& view, const LightRange& lights, const lightbin::Parallel& threads = {},
-               lightbin::LightCounts* counts = nullptr) {
+               lightbin::LightCounts* counts = nullptr, lightbin::Isa isa = lightbin::compiled_isa) {
     std::vector<float> min, max;
     const lightbin::Slices slices = *lightbin::Slices::exponential(7, 3, 90);
-    lightbin::Binner<options> binner;
+    lightbin::Binner<options> binner(isa);
     const auto inputs = lightbin::inputs_for<options>(some_bounds(view, min, max), slices);
     const auto grid = binner.bin(view, lights, inputs, threads);
     REQUIRE(grid);

@@ -73,8 +73,9 @@ struct AnyHow {
 
 struct lightbin_binner {
     lightbin::c::AnyHow how;
+    lightbin::Isa isa;
     lightbin::detail::Stages<lightbin::c::AnyHow> stages = {};
-    lightbin::MaskBinner masks{how.is.isa};
+    lightbin::MaskBinner masks{isa};
 };
 
 namespace lightbin {
@@ -92,7 +93,7 @@ template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightb
 }
 
 #if defined(LIGHTBIN_NO_THREADS)
-using Threads = Serial;
+using Threads = detail::Serial;
 #else
 using Threads = Parallel;
 #endif
@@ -183,7 +184,9 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                        lightbin_binner** binner) {
     using namespace lightbin::c;
     lightbin_binner_options given = {};
-    lightbin::Options known;
+    struct : lightbin::Options {
+        lightbin::Isa isa = lightbin::compiled_isa;
+    } known;
     lightbin_result result = check_pointers({{binner, "binner"}});
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
@@ -193,7 +196,7 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
         result = not_a_value(given.ids, "options.ids");
     if (const char* const define = left_out(known); result.error == LIGHTBIN_OK && define != nullptr)
         result = refused(LIGHTBIN_LEFT_OUT, define);
-    return call_if(result, [&] { return make_handle(binner, AnyHow{known}); });
+    return call_if(result, [&] { return make_handle(binner, AnyHow{known}, known.isa); });
 }
 
 void lightbin_binner_destroy(lightbin_binner* binner) {
@@ -214,8 +217,8 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
     return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
         const auto bin = [&]<class Id>(Id) {
             const auto made = binner->stages.template bin<Id>(
-                binner->how, view->value, lights.all(), inputs.slices != nullptr ? &inputs.slices->value : nullptr,
-                bounds, threads);
+                binner->how, binner->isa, view->value, lights.all(),
+                inputs.slices != nullptr ? &inputs.slices->value : nullptr, bounds, threads);
             return made ? write_grid(*made, grid) : refused(made.error());
         };
 #if !defined(LIGHTBIN_NO_U16)

@@ -97,12 +97,12 @@ void read_lights(const Given& from, std::size_t first, std::size_t count, typena
 
 }  // namespace c
 
-inline namespace LIGHTBIN_ABI_TAG {
+inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// The caller's lightbin_spheres, lightbin_spots or lightbin_boxes, as the engine reads lights.
 template <class Given> struct Lights<Given, c::Kind<Given>> {
     using Made = typename c::Kind<Given>::Made;
-    static constexpr detail::LightKind kind = c::Kind<Given>::kind;
+    static constexpr LightKind kind = c::Kind<Given>::kind;
 
     /// What other Lights have in place of this: a span of the caller's array.
     struct Count {
@@ -111,7 +111,7 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     };
     Count array;
     const Given& from;
-    const detail::WorldToView* to_view;
+    const WorldToView* to_view;
 
     /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array.
     void make(std::size_t first, std::size_t count, Made* to) const {
@@ -139,7 +139,7 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     }
 };
 
-}  // namespace LIGHTBIN_ABI_TAG
+}}  // namespace detail
 
 namespace c {
 
@@ -168,10 +168,10 @@ struct CallLights {
     /// Returns the lights of all kinds that the program has, for the engine. The result refers to this object.
     auto all() const {
         const auto of = [this]<class Given>(const Given& from) {
-            return Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr};
+            return detail::Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr};
         };
         const auto join = []<class First, class Rest>(const First& first, const Rest& rest) {
-            return JoinedLights<First, Rest>{first, rest};
+            return detail::JoinedLights<First, Rest>{first, rest};
         };
         const auto spheres = of(given.spheres);
         if constexpr (spheres_alone)

@@ -9,9 +9,7 @@
 #include <span>
 #include <utility>
 
-namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
-
-namespace detail {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// A struct with members x, y, z and w that are floats.
 template <class Light>
@@ -22,14 +20,12 @@ concept Vec4 = requires(const Light& light) {
     requires std::same_as<std::remove_cvref_t<decltype(light.w)>, float>;
 };
 
-}  // namespace detail
-
 /// The default way to make a light of an element: what converts to Box, Spot or Sphere is converted, and a vec4 becomes the
 /// Sphere with centre (x, y, z) and radius w.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
-             std::convertible_to<const Light&, Box> || detail::Vec4<Light>)
+             std::convertible_to<const Light&, Box> || Vec4<Light>)
     constexpr auto operator()(const Light& light) const {
         if constexpr (std::convertible_to<const Light&, Box>)
             return static_cast<Box>(light);
@@ -41,8 +37,6 @@ struct AsLight {
             return Sphere{light.x, light.y, light.z, light.w};
     }
 };
-
-namespace detail {
 
 /// What `to_light`, as const, returns for an array element.
 template <class ToLight, class Light>
@@ -102,5 +96,4 @@ template <class Range> auto checked_array(const Range& lights) {
         return std::span<const Sphere>();
 }
 
-}  // namespace detail
-}}  // namespace lightbin
+}}}  // namespace lightbin::detail

@@ -6,7 +6,7 @@
 #include <lightbin/detail/stages/footprints.hpp>
 #include <lightbin/slices.hpp>
 
-namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// The footprints of lights sorted by the first z-bin, an interval of view depth, that the light meets, and in the
 /// caller's order within a z-bin. A footprint's rank is its index in this order; lists have ranks in place of ids.
@@ -18,7 +18,7 @@ public:
     /// margin. A light that ends close to a boundary may also count for the bin on the other side.
     ///
     /// kernel  find_depth_buckets() for the lights' kind
-    void order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+    void order(DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
                const Slices& slices) {
         rank(kernel, view, footprints, slices);
         area_ = footprints.area();
@@ -26,20 +26,20 @@ public:
     }
 
     /// Finds what order() does, but leaves the footprints where they are: only sources() and bins() are valid after it.
-    void rank(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+    void rank(DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
               const Slices& slices) {
         run_ = {0, footprints.visible()};
         bin_count_ = static_cast<std::size_t>(slices.count());
         const std::uint32_t size = footprints.runs().back().end;
         std::uint32_t *const ends = ends_.reserve(bin_count_), *const sources = sources_.reserve(run_.end);
         std::uint32_t *const first_bins = first_bins_.reserve(size), *const last_bins = last_bins_.reserve(size);
-        detail::fill_items(ends, bin_count_, 0);
+        fill_items(ends, bin_count_, 0);
         const auto found = [=](std::uint32_t i, std::uint32_t first, std::uint32_t last) {
             first_bins[i] = first;
             last_bins[i] = last;
             ++ends[first];
         };
-        table_of(slices).find(kernel, true, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
+        table_of(slices).find(kernel, true, camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
                               found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
@@ -52,7 +52,7 @@ public:
         }
         // Only the footprints' indices are scattered here. By these indices the arrays of footprints are then gathered,
         // as scattered reads are faster than scattered writes.
-        for (const detail::FootprintRun& run : footprints.runs())
+        for (const FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 sources[ends[first_bins[i]]++] = i;
         find_ranges();
@@ -62,12 +62,12 @@ public:
     std::span<const std::uint32_t> sources() const { return {sources_.data(), run_.end}; }
     std::span<const BinRange> bins() const { return {bins_.data(), bin_count_}; }
 
-    detail::FootprintSlice all() const { return {arrays_, {&run_, 1}, run_.end, area_}; }
+    FootprintSlice all() const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     LightRanks ranks() const { return {{order_.data(), run_.end}, bins()}; }
 
 private:
     /// Writes the sorted footprints array by array, so that few cache lines are read in random order at a time.
-    void gather_lights(const detail::FootprintArrays& lights) {
+    void gather_lights(const FootprintArrays& lights) {
         arrays_ = buffers_.reserve(run_.end);
         std::uint32_t* const order = order_.reserve(run_.end);
         gather(lights.ids, order);
@@ -99,12 +99,12 @@ private:
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins + last_bins[sources[rank]]; to <= last; ++to)
                 to->least = rank;
-        detail::fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
+        fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
         // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before
         // the bin that of the light before it, and so on. skip[rank] is how many lights directly before that one are
         // known to have ended, so that each of them is passed only once.
         std::uint32_t* const skip = first_bins_.data();  // reused: the first bins are no longer needed
-        detail::fill_items(skip, run_.end, 0);
+        fill_items(skip, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             const std::uint32_t count = ends_.data()[bin];
             if (count <= bins[bin].least) {
@@ -120,16 +120,16 @@ private:
     }
 
     /// For each footprint, by its index before sorting by z-bin: the first and the last z-bin that its light meets.
-    detail::Buffer<std::uint32_t> first_bins_, last_bins_;
-    detail::Buffer<std::uint32_t> sources_;  ///< for each rank, the index of the footprint before sorting
-    detail::Buffer<std::uint32_t> order_;    ///< for each rank (place in order of depth), the id of the light
-    detail::Buffer<std::uint32_t> ends_;     ///< for each z-bin, the number of lights that begin in it or before it
-    detail::Buffer<BinRange> bins_;
-    detail::FootprintBuffers buffers_;
-    detail::FootprintArrays arrays_ = {};
-    detail::FootprintRun run_ = {};
+    Buffer<std::uint32_t> first_bins_, last_bins_;
+    Buffer<std::uint32_t> sources_;  ///< for each rank, the index of the footprint before sorting
+    Buffer<std::uint32_t> order_;    ///< for each rank (place in order of depth), the id of the light
+    Buffer<std::uint32_t> ends_;     ///< for each z-bin, the number of lights that begin in it or before it
+    Buffer<BinRange> bins_;
+    FootprintBuffers buffers_;
+    FootprintArrays arrays_ = {};
+    FootprintRun run_ = {};
     std::uint64_t area_ = 0;
     std::size_t bin_count_ = 0;
 };
 
-}}  // namespace lightbin
+}}}  // namespace lightbin::detail

@@ -47,12 +47,13 @@ template <class How> class Stages {
 public:
     /// See Binner::bin().
     ///
+    /// cap             the widest instruction set to use
     /// slices, bounds  null, and empty, if the options do not read them
     template <class Id, class Source, class Threads>
-    LIGHTBIN_ONCE Result<LightGrid<Id>> bin(const How& how, const View& view, const Source& source,
+    LIGHTBIN_ONCE Result<LightGrid<Id>> bin(const How& how, Isa cap, const View& view, const Source& source,
                                             const Slices* slices, const ZBounds& bounds, const Threads& threads) {
         const DefaultFloatEnvironment environment;
-        const Isa isa = machine_isa(how.is.isa);
+        const Isa isa = machine_isa(cap);
         if (const auto error = project(how, isa, view, source, slices, threads)) return *error;
         const ListKernels<Id> kernels =
             how.with_kind(source, [&]<LightKind kind>() { return how.template kernels<Id, kind>(); });
