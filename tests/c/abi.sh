@@ -42,7 +42,7 @@ fi
 # Errors that a call of contract.c is refused with are among those that the comment of its function lists, or that the
 # header's conventions give to all functions; and every error is listed somewhere. The causes that C++ has, too, have the
 # same names in the same order there. Each member of a struct of options is read.
-python3 - "$header" "$here/contract.c" "$here"/../../include/lightbin/error_code.hpp "$here"/../../include/lightbin/detail/c/*.hpp <<'END'
+python3 - "$header" "$here/contract.c" "$here"/../../include/lightbin/error_code.hpp "$here"/../../include/lightbin/options.hpp "$here"/../../include/lightbin/detail/c/*.hpp <<'END'
 import re, sys
 header, contract, error_code, *implementation = (open(name).read() for name in sys.argv[1:])
 names = re.findall(r"(LIGHTBIN_\w+) *=", re.search(r"typedef enum lightbin_error \{(.*?)\}", header, re.S).group(1))
@@ -74,7 +74,7 @@ assert causes == re.findall(r"^    (\w+)(?: = 100)?,$", error_code, re.M)
 plain = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
 for name, body in re.findall(r"typedef struct lightbin_(\w+_options|format|depth_buffer) \{(.*?)\} lightbin_\1;", plain, re.S):
     for member in re.findall(r"(\w+)\s*(?=[,;])", body):
-        assert member in ("size", "unused") or re.search(rf"(given\.|MEMBER\(){member}\b", "".join(implementation)), member
+        assert member in ("size", "unused") or re.search(rf"(given\.|structs\.|MEMBER\(){member}\b", "".join(implementation)), member
 END
 
 # Each function that the header declares is there.

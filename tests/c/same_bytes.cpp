@@ -303,8 +303,10 @@ lightbin_lights lights_of(std::size_t first_spot, std::size_t first_box, bool in
 /// Bins lights of each kind alone, and together, with one set of options on both sides.
 template <Options options> void compare_sides() {
     using Read = typename Binner<options>::Inputs;
-    const lightbin_binner_options asked = {sizeof asked, options.ids == IdWidth::u32 ? 0 : static_cast<int>(options.ids),
-                                           options.depth_test, static_cast<int>(options.slicing), LIGHTBIN_WIDEST};
+    auto asked = sized<lightbin_binner_options>();
+    for_each_option([](const char*, auto option, std::int32_t& given) { given = static_cast<std::int32_t>(option); },
+                    options, asked);
+    asked.isa = LIGHTBIN_WIDEST;
     const auto binner = make_binner(&asked);
     const auto view = make_view();
     const auto slices = make_slices();

@@ -33,18 +33,18 @@ constexpr const char* left_out([[maybe_unused]] const Options& options) {
 /// How a binner works whose options are set at run time. So the stages stand in the program once, and not once for each
 /// combination of options as those of Binners do; only the kernels do. See detail::FixedHow.
 struct AnyHow {
-    static constexpr detail::OptionCode may = {
-        .u16 = left_out(Options{.ids = IdWidth::u16}) == nullptr,
-        .u32 = true,
-        .depth_test = left_out(Options{.depth_test = true}) == nullptr,
-        .clusters = left_out(Options{.slicing = Slicing::clusters}) == nullptr,
-        .z_bins = left_out(Options{.slicing = Slicing::z_bins}) == nullptr};
     Options is;
 
+    template <class Value> static constexpr bool may(Value Options::*option, Value value = Value(true)) {
+        Options options;
+        options.*option = value;
+        return left_out(options) == nullptr;
+    }
+
     template <class Id, detail::LightKind kind> detail::ListKernels<Id> kernels() const {
-        if constexpr (may.depth_test)
+        if constexpr (may(&Options::depth_test))
             if (is.depth_test) {
-                if constexpr (may.clusters)
+                if constexpr (may(&Options::slicing, Slicing::clusters))
                     if (is.slicing == Slicing::clusters) return detail::list_kernels<Id, true, true, kind>();
                 return detail::list_kernels<Id, true, false, kind>();
             }
@@ -187,8 +187,9 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
     lightbin_result result = check_pointers({{binner, "binner"}});
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
-        result = first_error(LIGHTBIN_MEMBER(ids), LIGHTBIN_MEMBER(depth_test), LIGHTBIN_MEMBER(slicing),
-                             LIGHTBIN_MEMBER(isa));
+        lightbin::for_each_option(
+            [&](const char* name, const auto& from, auto& to) { result = first_error(result, read_member(from, to, name)); },
+            given, known);
     if (result.error == LIGHTBIN_OK && known.ids == lightbin::IdWidth::u8)
         result = not_a_value(given.ids, "options.ids");
     if (const char* const define = left_out(known); result.error == LIGHTBIN_OK && define != nullptr)
@@ -244,7 +245,7 @@ lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view*
                           counts.rejected, counts.culled, counts.first_spot, counts.first_box, 0},
                          masks);
         };
-        if constexpr (AnyHow::may.z_bins)
+        if constexpr (AnyHow::may(&lightbin::Options::slicing, lightbin::Slicing::z_bins))
             if (inputs.slices != nullptr) return bin(inputs.slices->value);
         return bin();
     });
