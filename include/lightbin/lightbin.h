@@ -308,7 +308,7 @@ LIGHTBIN_API lightbin_result lightbin_view_depths(const lightbin_view* view, dou
                                                   float depths[2]);
 
 /* Returns the window depth of a view depth, up to rounding. NaN for an infinite view depth, or if view is null. */
-LIGHTBIN_API double lightbin_view_window_depth(const lightbin_view* view, double view_depth);
+LIGHTBIN_API float lightbin_view_window_depth(const lightbin_view* view, double view_depth);
 
 /* ---- Lights ---- */
 

@@ -515,7 +515,7 @@ TEST_CASE("C: shader texts are those of C++, in each language") {
     options.flip_y = 1, options.viewport_corner = 1, options.push_constants = 1, options.slots_given = 1;
     options.depth = {5, 2}, options.z_bounds = {4, 1}, options.grid = {3, 0};
     compare_shaders(reduce_shader({.language = ShaderLanguage::glsl_vulkan,
-                                   .stage = ShaderStage::fragment,
+                                   .fragment = true,
                                    .samples = 4,
                                    .reversed_z = true,
                                    .orthographic = true,

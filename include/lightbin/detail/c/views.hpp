@@ -159,8 +159,8 @@ lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, do
     });
 }
 
-double lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
-    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<double>::quiet_NaN();
+float lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
+    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<float>::quiet_NaN();
 }
 
 #if !defined(LIGHTBIN_WITHOUT_SLICES)
