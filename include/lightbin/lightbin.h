@@ -436,6 +436,8 @@ typedef struct lightbin_depth_buffer {
     /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. For opaque
      * surfaces alone: transparent ones are seen in front of the background, too. */
     int32_t skip_background;
+    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the bounds are the same */
+    int32_t unused;
 } lightbin_depth_buffer;
 
 /* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row. Where a pointer
@@ -448,21 +450,15 @@ typedef struct lightbin_z_bounds {
     size_t tiles;                 /* the number of floats in each array, the view's number of tiles or more */
 } lightbin_z_bounds;
 
-/* Memory for Z bounds: arrays of `tiles` floats for the bounds that are wanted, null for the others. */
-typedef struct lightbin_z_bounds_buffers {
-    uint32_t size;
-    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the result is the same */
-    float *min, *max;
-    size_t tiles;
-} lightbin_z_bounds_buffers;
-
-/* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors:
- * LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
+/* Reduces a depth buffer to the Z bounds of each tile.
+ *
+ * min, max  arrays of `tiles` floats that become lightbin_z_bounds::min and max; null: this bound is not wanted
+ *
+ * Errors: LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
  * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles; LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
                                                    const lightbin_depth_buffer* buffer,
-                                                   const lightbin_z_bounds_buffers* out,
-                                                   lightbin_z_bounds* bounds);
+                                                   float* min, float* max, size_t tiles);
 
 /* ---- Binners ---- */
 
@@ -805,7 +801,7 @@ typedef struct lightbin_shader lightbin_shader;
  * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
  * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
  * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
- * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
+ * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
  * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW, of the format;
  * LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */

@@ -8,8 +8,6 @@
 #include <lightbin/detail/c/views.hpp>
 #include <lightbin/masks.hpp>
 
-#include <atomic>
-
 namespace lightbin {
 namespace c {
 

@@ -17,9 +17,10 @@ template <class Body>
 lightbin_result with_grid(const lightbin_grid* given, const char* name, const Body& body) {
     lightbin_grid grid;
     lightbin_result result = read(given, grid, name);
-    if (result.error == LIGHTBIN_OK && grid.range_count > 0)
-        result = check_pointers({{grid.ranges, "grid.ranges"}});
-    if (result.error == LIGHTBIN_OK && grid.id_count > 0) result = check_pointers({{grid.ids, "grid.ids"}});
+    if (result.error == LIGHTBIN_OK)
+        result = first_error(check_array(grid.ranges, grid.range_count, "grid.ranges"),
+                             check_array(grid.ids, grid.id_count, "grid.ids"));
+    if (result.error != LIGHTBIN_OK) return result;
     const auto with = [&]<class Id>(const Id* ids) {
         return call_if(succeeded(), [&] {
             const auto size = [](std::uint64_t count) { return static_cast<std::size_t>(count); };
@@ -30,7 +31,6 @@ lightbin_result with_grid(const lightbin_grid* given, const char* name, const Bo
                 {{grid.order, size(grid.order_count)}, {same_layout<BinRange>(grid.bins), size(grid.bin_count)}}));
         });
     };
-    if (result.error != LIGHTBIN_OK) return result;
 #if defined(LIGHTBIN_NO_U16)
     if (grid.id_bytes == 2) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_U16");
 #else
@@ -100,8 +100,9 @@ template <class Id>
 lightbin_result copy_grid(const LightGrid<Id>& from, const LightGrid<Id>* before, lightbin_range* ranges,
                           std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity,
                           lightbin_grid* grid) {
-    if (ranges == nullptr && !from.ranges().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ranges");
-    if (ids == nullptr && !from.ids().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ids");
+    const lightbin_result result =
+        first_error(check_array(ranges, from.ranges().size(), "ranges"), check_array(ids, from.ids().size(), "ids"));
+    if (result.error != LIGHTBIN_OK) return result;
     const std::span<ListRange> all_ranges = {same_layout<ListRange>(ranges),
                                              static_cast<std::size_t>(range_capacity)};
     const std::span<Id> all_ids = {static_cast<Id*>(ids), static_cast<std::size_t>(id_capacity)};
@@ -129,13 +130,9 @@ lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* b
     return with_grids(
         grid, "grid", before, "before", "before.id_bytes",
         [&]<class Id>(const auto& from, const lightbin::LightGrid<Id>& first) {
-            const bool same = static_cast<const void*>(first.ranges().data()) == ranges &&
-                              (first.ids().empty() || first.ids().data() == ids);
+            const bool same = static_cast<const void*>(first.ranges().data()) == ranges && first.ids().data() == ids;
             if (!same) return refused(LIGHTBIN_OTHER_MEMORY, "before");
-            const lightbin::LightGrid<Id> in_memory(first.tiles_x(), first.tiles_y(), first.ranges(),
-                                                    {static_cast<const Id*>(ids), first.ids().size()},
-                                                    first.light_counts(), first.slices(), first.ranks());
-            return copy_grid<Id>(from, &in_memory, ranges, range_capacity, ids, id_capacity, grid);
+            return copy_grid<Id>(from, &first, ranges, range_capacity, ids, id_capacity, grid);
         });
 }
 
@@ -177,7 +174,7 @@ lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid
     using namespace lightbin::c;
     const lightbin_result checked =
         first_error(check_pointers({{budget, "budget"}}),
-                    weight_count > 0 ? check_pointers({{weights, "weights"}}) : succeeded(),
+                    check_array(weights, weight_count, "weights"),
                     check_size(limited, "limited"), cut != nullptr ? check_size(cut, "cut") : succeeded());
     return call_if(checked, [&] {
         return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& whole) {
@@ -196,8 +193,7 @@ lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t*
                                        std::size_t capacity, std::uint32_t* listed) {
     using namespace lightbin::c;
     const lightbin_result checked =
-        first_error(check_pointers({{listed, "listed"}}),
-                    capacity > 0 ? check_pointers({{entries, "entries"}}) : succeeded());
+        first_error(check_pointers({{listed, "listed"}}), check_array(entries, capacity, "entries"));
     return call_if(checked, [&] {
         return with_grid(grid, "grid", [&](const auto& from) {
             const auto count = count_entries(from, std::span<std::uint32_t>(entries, capacity));
@@ -235,9 +231,10 @@ lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format
                                 std::uint64_t out_bytes, lightbin_encoded* encoded) {
     using namespace lightbin::c;
     lightbin::ListFormat known;
-    return call_if(first_error(check_size(encoded, "encoded"), read_format(format, known, "format")), [&] {
+    const lightbin_result checked = first_error(check_array(out, out_bytes, "out"), check_size(encoded, "encoded"),
+                                                read_format(format, known, "format"));
+    return call_if(checked, [&] {
         return with_grid(grid, "grid", [&](const auto& from) {
-            if (out == nullptr && out_bytes > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "out");
             const auto made = lightbin::encode(
                 from, known, std::span(static_cast<std::byte*>(out), static_cast<std::size_t>(out_bytes)));
             if (!made) return refused(made.error());
