@@ -350,13 +350,13 @@ static void test_binners(void) {
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
     CHECK(grid.range_count == tile_count && grid.id_count > 0 && grid.lights == light_count);
     ids = (uint32_t*)malloc((size_t)grid.id_count * sizeof *ids);
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count - 1, ids, grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count - 1, ids, grid.id_count).error ==
           LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count - 1).error ==
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count - 1).error ==
           LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    NEEDS(lightbin_copy_grid(&grid, ranges, tile_count, NULL, grid.id_count), "ids");
-    NEEDS(lightbin_copy_grid(NULL, ranges, tile_count, ids, 1), "grid");
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
+    NEEDS(lightbin_copy_grid(&grid, NULL, ranges, tile_count, NULL, grid.id_count), "ids");
+    NEEDS(lightbin_copy_grid(NULL, NULL, ranges, tile_count, ids, 1), "grid");
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
     {
         lightbin_format format;
         lightbin_encoded encoded;
@@ -524,22 +524,21 @@ static void test_grids(void) {
     ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
     other = grid;
     both = grid;
-    CHECK(lightbin_copy_grid(&other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
-    NEEDS(lightbin_append_grid(&both, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count), "before");
-    CHECK(refuses(lightbin_append_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+    CHECK(lightbin_copy_grid(&other, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_copy_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
                   LIGHTBIN_OTHER_MEMORY, "before"));
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
           LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
           LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    CHECK(refuses(lightbin_append_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
+    CHECK(refuses(lightbin_copy_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
                   "before"));
     CHECK(ranges[tile_count].count == 0 && both.ids == grid.ids);
     other.tiles_x = 13;
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
           LIGHTBIN_GRIDS_DIFFER);
     other.tiles_x = 20;
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
           LIGHTBIN_OK);
     options.ids = LIGHTBIN_U16;
     if (lightbin_binner_create(&options, &sixteen).error == LIGHTBIN_OK) {
@@ -547,7 +546,7 @@ static void test_grids(void) {
         CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
         CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &narrow, &both), LIGHTBIN_NOT_A_VALUE,
                       "second.id_bytes"));
-        CHECK(refuses(lightbin_append_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+        CHECK(refuses(lightbin_copy_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
                       LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
     }
     free(ids);

@@ -222,8 +222,8 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     std::vector<lightbin_range> ranges(2 * cells);
     std::vector<Id> ids(2 * expected.ids().size()), cpp_ids(2 * expected.ids().size());
     lightbin_grid first = grid, both = limited;
-    works(lightbin_copy_grid(&first, ranges.data(), ranges.size(), ids.data(), ids.size()));
-    works(lightbin_append_grid(&both, &first, ranges.data(), ranges.size(), ids.data(), ids.size()));
+    works(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(), ids.size()));
+    works(lightbin_copy_grid(&both, &first, ranges.data(), ranges.size(), ids.data(), ids.size()));
     CHECK((cells == 0 || (first.ranges == ranges.data() && first.ids == ids.data())));
     const auto cpp_first = *expected.copy_to(cpp_ranges, cpp_ids);
     compare(cpp_first, first);
