@@ -502,7 +502,8 @@ typedef struct lightbin_range {
     uint32_t offset, count;
 } lightbin_range;
 
-/* The least and greatest rank of the lights whose depths meet a z-bin; least > greatest if there is none. */
+/* With LIGHTBIN_Z_BINS, the least and greatest rank (place in the order of depth) of the lights that meet a slice;
+ * least > greatest if there is none. */
 typedef struct lightbin_bin_range {
     uint32_t least, greatest;
 } lightbin_bin_range;
@@ -597,15 +598,16 @@ LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const 
  * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its
  * numbers: all offsets and ids must be inside of the arrays that they refer to. */
 
-/* Copies the ranges and ids of a grid to the caller's memory, which is only written, in ascending order, and so may be a
- * mapped GPU buffer. On success *grid is the copy.
+/* Copies the ranges and ids of a grid to the caller's memory, which is only written, in ascending order, and so may be
+ * a mapped GPU buffer. On success *grid is the copy.
  *
- * Shaders made with lightbin_snippet_options::views read the grids of several views in one memory. The copy of each view
- * after the first is written behind the others. *grid is then the grid of all views so far: its ranges are those of view
- * 0, then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts and
- * ranks are those of the last view.
+ * Shaders made with lightbin_snippet_options::views read the grids of several views in one memory. The copy of each
+ * view after the first is written behind the others. *grid is then the grid of all views so far: its ranges are those
+ * of view 0, then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts
+ * and ranks are those of the last view.
  *
- * before                       the copy of the views before, in the same memory; null for the first view, or a single one
+ * before                       the copy of the views before, in the same memory; null for the first view, or a single
+ *                              one
  * range_capacity, id_capacity  how many ranges and ids there is memory for, in all views
  *
  * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
@@ -615,7 +617,7 @@ LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const light
                                                 lightbin_range* ranges, uint64_t range_capacity, void* ids,
                                                 uint64_t id_capacity);
 
-/* Makes unions of grids, in memory that it keeps. */
+/* Makes unions of grids, in memory that it keeps from call to call. */
 typedef struct lightbin_grid_union lightbin_grid_union;
 
 /* Makes a lightbin_grid_union, to be freed with lightbin_grid_union_destroy(). */
@@ -633,7 +635,7 @@ LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
 LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
                                                   const lightbin_grid* second, lightbin_grid* grid);
 
-/* Limits the lists of grids, in memory that it keeps. */
+/* Shortens the lists of grids, in memory that it keeps from call to call. */
 typedef struct lightbin_budget lightbin_budget;
 
 /* Makes a lightbin_budget, to be freed with lightbin_budget_destroy(). */
@@ -781,9 +783,9 @@ typedef struct lightbin_shader lightbin_shader;
  * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
  * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
  * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
- * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
- * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW, of the format;
- * LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
+ * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE,
+ * LIGHTBIN_VIEWS_OUT_OF_RANGE, LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
+ * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options, lightbin_shader** shader);
 LIGHTBIN_API void lightbin_shader_destroy(lightbin_shader* shader);
@@ -955,7 +957,7 @@ typedef struct lightbin_cull_groups {
     uint32_t x, y;
 } lightbin_cull_groups;
 
-/* All that a program needs to run the passes for a view. */
+/* All that a program needs to run the shaders of lightbin_cull_shader() for a view. */
 typedef struct lightbin_cull_plan {
     uint32_t size;
     uint32_t unused;
@@ -971,7 +973,7 @@ typedef struct lightbin_cull_plan {
     uint32_t constants[64];
 } lightbin_cull_plan;
 
-/* What the passes leave in the first words of `scratch`. */
+/* What the shaders of lightbin_cull_shader() leave in the first words of the buffer `scratch`. */
 typedef struct lightbin_cull_totals {
     uint32_t entries;  /* of the complete lists, at most 2^32 - 1; undefined if there are masks */
     uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
@@ -1006,9 +1008,9 @@ typedef struct lightbin_edges {
     float low, high;
 } lightbin_edges;
 
-/* Write what the passes read in the buffer `z_bounds` with a depth test: the two sides of each tile column and then of
- * each tile row; the depths of the slices. *count is their number. If the memory is too small, the error is
- * LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
+/* Write what the shaders of lightbin_cull_shader() read in the buffer `z_bounds` with a depth test: the two sides of
+ * each tile column and then of each tile row; the depths of the slices. *count is their number. If the memory is too
+ * small, the error is LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
 LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, size_t capacity,
                                                    size_t* count);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,

@@ -53,7 +53,7 @@ inline constexpr const char* sentences[] = {
 };
 static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_NO_SUCH_ISA + 1);
 
-/// Returns the sentence of a result, with the name and the numbers filled in.
+/// Returns an English sentence for a result, with its name and numbers filled in.
 inline Text text_of(const lightbin_result& result) {
     if (result.error >= LIGHTBIN_MATRIX_NOT_FINITE && result.error <= LIGHTBIN_SCRATCH_TOO_LARGE)
         return Error{static_cast<ErrorCode>(result.error), result.needed, result.available}.message();
@@ -79,7 +79,8 @@ inline std::size_t write_text(const char* text, std::size_t length, char* to, st
     return length;
 }
 
-/// The greatest `size` that is followed, so that one of chance is not followed through the caller's memory.
+/// The greatest `size` of a caller's struct, which may be any number if the caller did not set it: memory further
+/// behind the struct is not read.
 inline constexpr std::uint32_t max_size = 1024;
 
 /// Returns why the `size` of a caller's struct is refused. The struct may be longer than the library's, if the members
@@ -109,13 +110,13 @@ template <class Struct> lightbin_result write(std::type_identity_t<Struct> known
     return succeeded();
 }
 
-/// Returns why a number that a caller gave is refused.
+/// Returns the error that a number is none of its enum's values.
 inline lightbin_result not_a_value(std::int32_t given, const char* name) {
     return refused(LIGHTBIN_NOT_A_VALUE, name, static_cast<std::uint64_t>(std::int64_t{given}));
 }
 
-// read_member() reads a member of a caller's struct: 0 leaves the default. Enums have the same numbers on both sides, and
-// to_string() has a name for each.
+// read_member() reads a member of a caller's struct: 0 leaves the default. Enums have the same numbers on both sides,
+// and to_string() has a name for each.
 inline lightbin_result read_member(std::int32_t given, bool& known, const char*) {
     known = given != 0;
     return succeeded();
@@ -144,8 +145,8 @@ inline lightbin_result read_member(std::int32_t given, Isa& known, const char* n
                ? result
                : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
-/// Copies the member `name` of the caller's C struct `given` to the C++ struct `known`. Returns why its value is refused,
-/// or a success.
+/// Copies the member `name` of the C struct `given` to the C++ struct `known`. Returns why its value is refused, or a
+/// success.
 #define LIGHTBIN_MEMBER(name) read_member(given.name, known.name, "options." #name)
 
 /// Returns the first of several results that is an error, or a success.
@@ -196,9 +197,9 @@ lightbin_result make_handle(Handle** handle, Arguments&&... arguments) {
     return succeeded();
 }
 
-/// Returns the address of objects of one side as that of the other side's, which have the same members in the same order.
-/// The compiler must not reorder accesses by the two types, which it takes for different objects: the fence, which makes
-/// no instruction, lies between those that precede the call and those that follow it.
+/// Returns the address of objects of one side as that of the other side's, which have the same members in the same
+/// order. The compiler must not reorder accesses by the two types, which it takes for different objects: the fence,
+/// which makes no instruction, lies between those that precede the call and those that follow it.
 template <class To, class From> auto* same_layout(From* from) {
     static_assert(sizeof(To) == sizeof(From) && alignof(To) == alignof(From));
     std::atomic_signal_fence(std::memory_order_seq_cst);

@@ -11,7 +11,7 @@
 namespace lightbin {
 namespace c {
 
-/// Returns the name of the define that leaves out the code for options, or null if the program has it.
+/// Returns the name of the define that leaves out code that a binner with these options needs, or null if none does.
 constexpr const char* left_out([[maybe_unused]] const Options& options) {
 #if defined(LIGHTBIN_NO_U16)
     if (options.ids == IdWidth::u16) return "LIGHTBIN_NO_U16";
@@ -28,8 +28,8 @@ constexpr const char* left_out([[maybe_unused]] const Options& options) {
     return nullptr;
 }
 
-/// How a binner works whose options are set at run time. So the stages stand in the program once, and not once for each
-/// combination of options as those of Binners do; only the kernels do. See detail::FixedHow.
+/// The options of a binner, set at run time: the argument of the template detail::Stages, for which a C++ Binner has a
+/// detail::FixedHow. So the program has the code of the stages once, not once for each combination of options.
 struct AnyHow {
     Options is;
 
@@ -84,8 +84,8 @@ template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightb
     const LightRanks& ranks = from.ranks();
     return write({0, from.tiles_x(), from.tiles_y(), from.slices(), same_layout<lightbin_range>(from.ranges().data()),
                   from.ids().data(), from.ranges().size(), from.ids().size(), sizeof(Id), counts.lights,
-                  counts.rejected, counts.culled, ranks.order.data(), same_layout<lightbin_bin_range>(ranks.bins.data()),
-                  ranks.order.size(), ranks.bins.size(), counts.first_spot, counts.first_box},
+                  counts.rejected, counts.culled, ranks.order.data(),
+                  same_layout<lightbin_bin_range>(ranks.bins.data()), ranks.order.size(), ranks.bins.size(), counts.first_spot, counts.first_box},
                  to);
 }
 
@@ -186,7 +186,9 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
         lightbin::for_each_option(
-            [&](const char* name, const auto& from, auto& to) { result = first_error(result, read_member(from, to, name)); },
+            [&](const char* name, const auto& from, auto& to) {
+                result = first_error(result, read_member(from, to, name));
+            },
             given, known);
     if (result.error == LIGHTBIN_OK && known.ids == lightbin::IdWidth::u8)
         result = not_a_value(given.ids, "options.ids");

@@ -14,18 +14,20 @@
 namespace lightbin {
 namespace c {
 
-/// What boxes that are given without a radius or a taper have in its place: one float for all of them.
+/// The radius and the taper of boxes that are given without: single floats that all boxes of a call share.
 inline constexpr float unbounded = std::numeric_limits<float>::infinity(), untapered = 1;
 
-/// Describes one property of a light, such as its centre: the member of the C struct that says where the caller's floats
-/// are, the number of floats of each light, and the byte of a C++ Sphere, Spot or Box from which on they are stored.
+/// Describes one property of a light, such as its centre: the member of the C struct that says where the caller's
+/// floats are, the number of floats of each light, and the byte of a C++ Sphere, Spot or Box from which on they are
+/// stored.
 template <class Given> struct Member {
     lightbin_floats Given::*floats;
     std::size_t each, offset;
     const char* name;
 };
 
-/// The kinds of lights: what the engine reads in place of the caller's, and the members of both.
+/// Describes a kind of lights, lightbin_spheres, lightbin_spots or lightbin_boxes: the C++ struct that each light is
+/// copied to, and the members on both sides.
 template <class Given> struct Kind;
 template <> struct Kind<lightbin_spheres> {
     using Made = Sphere;
@@ -54,8 +56,8 @@ template <> struct Kind<lightbin_boxes> {
         {&lightbin_boxes::radius, 1, offsetof(Box, radius), "lights.boxes.radius"}};
 };
 
-/// Calls body.operator()<m>(floats) for each member of a kind of lights, where Kind<Given>::members[m] is the member and
-/// `floats` says where the caller has it.
+/// Calls body.operator()<m>(floats) for each member of a kind of lights, where Kind<Given>::members[m] is the member
+/// and `floats` says where the caller has it.
 template <class Given, class Body> LIGHTBIN_INLINE void for_each_member(const Given& from, const Body& body) {
     [&]<std::size_t... m>(std::index_sequence<m...>) {
         (body.template operator()<m>(from.*Kind<Given>::members[m].floats), ...);
@@ -67,7 +69,8 @@ inline std::uintptr_t address_of(const void* pointer) {
     return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// Whether a member is one float that follows the three floats of the member before it, in the engine's lights.
+/// Whether member number m of a kind of lights is one float that follows three floats in the C++ struct, as a radius
+/// follows a centre.
 template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
     constexpr auto& members = Kind<Given>::members;
     if constexpr (m == 0 || m >= std::size(members))
@@ -76,8 +79,8 @@ template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
         return members[m - 1].each == 3 && members[m].each == 1;
 }();
 
-/// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied before
-/// those of the next light, as they mostly lie side by side in memory.
+/// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied
+/// before those of the next light, as they mostly lie side by side in memory.
 ///
 /// fours  whether every radius lies directly behind its centre in the caller's memory, as it does in a Sphere, and
 ///        every other single number directly behind the vector that precedes it in the C++ struct. Then the vector
@@ -104,7 +107,7 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     using Made = typename c::Kind<Given>::Made;
     static constexpr detail::LightKind kind = c::Kind<Given>::kind;
 
-    /// What other Lights have in place of this: a span of the caller's array.
+    /// Stands for the caller's array, which other Lights have as a span, where only the number of lights is asked for.
     struct Count {
         std::size_t count;
         std::size_t size() const { return count; }
@@ -157,10 +160,10 @@ template <class Given> lightbin_result check_lights(const Given& lights) {
     return lights.count > 0 ? result : succeeded();
 }
 
-/// Whether spots and boxes are left out.
+/// Whether the library is compiled for spheres alone, by LIGHTBIN_NO_SPOTS and LIGHTBIN_NO_BOXES.
 inline constexpr bool spheres_alone = !detail::kinds_have_spots && !detail::kinds_have_boxes;
 
-/// The lights of a call.
+/// The lights that a caller gave to a function, and the transform to view space if they are in world space.
 struct CallLights {
     lightbin_lights given;
     std::optional<detail::WorldToView> to_view;

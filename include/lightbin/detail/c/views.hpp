@@ -37,7 +37,8 @@ inline lightbin_result read_view(const lightbin_view_options* options, std::opti
     return result;
 }
 
-/// Returns why Z bounds in arrays of `tiles` floats are refused, of which those that are null are not there.
+/// Returns why arrays with a view depth for each tile are refused, which have `tiles` elements, or are null if they are
+/// not wanted.
 inline lightbin_result check_bounds(std::initializer_list<const float*> bounds, std::size_t tiles, const View& view,
                                     const char* name) {
     for (const float* const bound : bounds)
