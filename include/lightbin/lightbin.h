@@ -908,9 +908,7 @@ typedef enum lightbin_cull_kind {
 } lightbin_cull_kind;
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
- * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by
- * default at bindings below 4, 128 invocations in a group and 9 KB of shared memory; none uses subgroups, and no group
- * waits for another. */
+ * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: docs/gpu.md says what they use. */
 typedef struct lightbin_cull_options {
     uint32_t size;
     int32_t language;   /* a lightbin_shader_language */

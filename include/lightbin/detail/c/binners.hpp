@@ -85,7 +85,8 @@ template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightb
     return write({0, from.tiles_x(), from.tiles_y(), from.slices(), same_layout<lightbin_range>(from.ranges().data()),
                   from.ids().data(), from.ranges().size(), from.ids().size(), sizeof(Id), counts.lights,
                   counts.rejected, counts.culled, ranks.order.data(),
-                  same_layout<lightbin_bin_range>(ranks.bins.data()), ranks.order.size(), ranks.bins.size(), counts.first_spot, counts.first_box},
+                  same_layout<lightbin_bin_range>(ranks.bins.data()), ranks.order.size(), ranks.bins.size(),
+                  counts.first_spot, counts.first_box},
                  to);
 }
 
