@@ -901,7 +901,7 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_MASKS = 5    /* in place of count to fill: writes masks of the columns and rows of tiles */
 } lightbin_cull_pass;
 
-/* What the lights in the buffer are. Boxes are binned on the CPU. */
+/* The kind of lights that lightbin_cull_shader() bins on the GPU. Boxes are binned on the CPU. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
     LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */

@@ -41,7 +41,7 @@ template <class Body> lightbin_result with_grid(const lightbin_grid* given, cons
 
 /// Calls body() with two LightGrids, whose ids must have the same width.
 ///
-/// second_width  the name of the second one's member id_bytes, for an error
+/// second_width  the name that the error has if the widths differ
 template <class Body>
 lightbin_result with_grids(const lightbin_grid* first, const char* first_name, const lightbin_grid* second,
                            const char* second_name, const char* second_width, const Body& body) {

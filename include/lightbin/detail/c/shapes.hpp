@@ -14,7 +14,7 @@ namespace c {
 static_assert(offsetof(lightbin_box, half_axes) == offsetof(Box, half_axes) &&
               offsetof(lightbin_box, taper) == offsetof(Box, taper));
 
-/// Returns the light of one side that has the numbers of the other side's.
+/// Copies a light from a C++ struct to the C struct with the same members, or back.
 template <class To, class From> To same_numbers(const From& from) {
     static_assert(sizeof(To) == sizeof(From));
     To to = {};
