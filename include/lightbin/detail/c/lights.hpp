@@ -69,35 +69,6 @@ inline std::uintptr_t address_of(const void* pointer) {
     return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// Whether member number m of a kind of lights is one float that follows three floats in the C++ struct, as a radius
-/// follows a centre.
-template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
-    constexpr auto& members = Kind<Given>::members;
-    if constexpr (m == 0 || m >= std::size(members))
-        return false;
-    else
-        return members[m - 1].each == 3 && members[m].each == 1;
-}();
-
-/// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied
-/// before those of the next light, as they mostly lie side by side in memory.
-///
-/// fours  whether every radius lies directly behind its centre in the caller's memory, as it does in a Sphere, and
-///        every other single number directly behind the vector that precedes it in the C++ struct. Then the vector
-///        and the number are copied together, as four floats
-template <bool fours, class Given>
-void read_lights(const Given& from, std::size_t first, std::size_t count, typename Kind<Given>::Made* to) {
-    const Given arrays = from;  // a local copy, so that compilers need not reload it after each store
-    for (std::size_t i = 0; i < count; ++i)
-        for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& floats) {
-            constexpr const Member<Given>& member = Kind<Given>::members[m];
-            if constexpr (!fours || !follows_three<Given, m>)
-                std::memcpy(reinterpret_cast<char*>(to + i) + member.offset,
-                            static_cast<const char*>(floats.first) + (first + i) * floats.stride,
-                            (fours && follows_three<Given, m + 1> ? 4 : member.each) * sizeof(float));
-        });
-}
-
 }  // namespace c
 
 inline namespace LIGHTBIN_ABI_TAG {
@@ -116,17 +87,17 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     const Given& from;
     const detail::WorldToView* to_view;
 
-    /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array.
+    /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array. All floats of a light are
+    /// copied before those of the next light, as they mostly lie side by side in memory.
     void make(std::size_t first, std::size_t count, Made* to) const {
-        bool fours = true;
-        c::for_each_member(from, [&]<std::size_t m>(const lightbin_floats& one) {
-            if constexpr (c::follows_three<Given, m>) {
-                const lightbin_floats& three = from.*c::Kind<Given>::members[m - 1].floats;
-                fours = fours && three.stride == one.stride &&
-                        c::address_of(one.first) == c::address_of(three.first) + 3 * sizeof(float);
-            }
-        });
-        fours ? c::read_lights<true>(from, first, count, to) : c::read_lights<false>(from, first, count, to);
+        const Given arrays = from;  // a local copy, so that compilers need not reload it after each store
+        for (std::size_t i = 0; i < count; ++i)
+            c::for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& floats) {
+                constexpr const c::Member<Given>& member = c::Kind<Given>::members[m];
+                std::memcpy(reinterpret_cast<char*>(to + i) + member.offset,
+                            static_cast<const char*>(floats.first) + (first + i) * floats.stride,
+                            member.each * sizeof(float));
+            });
     }
 
     /// Returns the caller's lights if they lie in memory as Spheres, Spots or Boxes do, so that kernels can read them
