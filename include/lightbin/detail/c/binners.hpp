@@ -115,15 +115,11 @@ public:
 private:
     template <class Body> struct Context {
         void run(std::size_t i) {
-#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
-            try {
+            const auto result = call_if(succeeded(), [&] {
                 body(i);
-            } catch (...) {
-                failed = true;
-            }
-#else
-            body(i);
-#endif
+                return succeeded();
+            });
+            if (result.error != LIGHTBIN_OK) failed = true;
         }
 
         Body body;
