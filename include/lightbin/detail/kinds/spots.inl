@@ -80,7 +80,7 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
 }
 
 /// Projects in double the spots of a chunk in chunk.fallback, which float can't project. A spot's tile rectangle is the
-/// intersection of those of `balls`, the sphere that its cone cuts, and `least`, its least_sphere().
+/// intersection of those of `balls`, the sphere that its cone cuts, and `least`, its bounding_sphere().
 inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
                                     ProjectedChunk& chunk, ProjectCounts& counts) {
     project_in_double(camera, balls, chunk, counts);
