@@ -66,7 +66,7 @@ lightbin::ZBounds DepthBounds::reduce(Stage& stage) {
     const lightbin::View view = stage.view();
     lightbin::ReduceOptions options;
     options.language = lightbin::ShaderLanguage::glsl_330;
-    options.stage = lightbin::ShaderStage::fragment;
+    options.fragment = true;
     options.skip_background = true;
     const GLuint program = stage.use(stage.shaders().everywhere_vertex(),
                                      "#version 330 core\n" + value_of(lightbin::reduce_shader(options)).text);

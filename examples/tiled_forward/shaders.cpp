@@ -208,7 +208,7 @@ lightbin::ShaderBinding list_binding(int glsl) {
 std::string reduce_fragment_shader(int glsl, int samples, bool orthographic, bool skip_background) {
     lightbin::ReduceOptions options;
     options.language = list_options(glsl).language;
-    options.stage = lightbin::ShaderStage::fragment;
+    options.fragment = true;
     options.samples = samples;
     options.orthographic = orthographic;
     options.skip_background = skip_background;

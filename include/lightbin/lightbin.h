@@ -6,8 +6,7 @@
  *     #define LIGHTBIN_IMPLEMENTATION
  *     #include <lightbin/lightbin.h>
  *
- * and everywhere else the include alone. All headers lie in one folder, so one include path serves C and C++;
- * docs/c.md has a whole program.
+ * and everywhere else the include alone. docs/c.md has a whole program.
  *
  * What it does: a renderer gives it a camera and its lights each frame. The screen is divided into tiles, squares of
  * pixels. The library returns for each tile the list of the lights that can reach what is seen there, in two arrays
@@ -32,10 +31,9 @@
  *             function may return LIGHTBIN_OUT_OF_MEMORY, LIGHTBIN_NULL_ARGUMENT, LIGHTBIN_WRONG_SIZE,
  *             LIGHTBIN_LEFT_OUT and LIGHTBIN_NOT_A_VALUE; comments list all others.
  *   Structs   A struct whose first member is `size` is passed with size = sizeof of the struct, and all members that
- *             are not set must be 0, which is the default of each. So a program goes on working with a later lightbin
- *             whose structs have more members. A struct that is newer than the library works as long as the members
- *             that the library does not know are 0. No struct will have more than 1,024 bytes: a greater `size` is
- *             refused, as that of a struct that was not set up.
+ *             are not set must be 0, which is the default of each. Later versions add members at the end. A struct that
+ *             is newer than the library works as long as the members that the library does not know are 0. No struct
+ *             will have more than 1,024 bytes: a greater `size` is refused, as that of a struct that was not set up.
  *   Enums     Members of structs that hold an enum's value have the type int32_t, so that their size is the same for
  *             all compilers and languages. A number that is no value of the enum is refused.
  *   Handles   A handle, such as a lightbin_view, is made by functions whose comments name the one that frees it. That
@@ -46,8 +44,7 @@
  *             to be written must not overlap other memory of the call. Pointers are not kept after the call.
  *   Memory    All memory is of C++'s operator new, which a program may replace: docs/c.md says how. Handles keep theirs
  *             for the next call, so that calls allocate nothing once warm. If memory runs out, the error is
- *             LIGHTBIN_OUT_OF_MEMORY. (Where the implementing file is compiled without exceptions, as by
- *             -fno-exceptions, the program is ended by abort() instead.)
+ *             LIGHTBIN_OUT_OF_MEMORY; a library that is compiled without exceptions ends the program by abort().
  */
 #ifndef LIGHTBIN_LIGHTBIN_H
 #define LIGHTBIN_LIGHTBIN_H
@@ -57,18 +54,15 @@
 
 /* LIGHTBIN_API: how the functions are declared. Define LIGHTBIN_SHARED to use lightbin as a shared library, and
  * LIGHTBIN_BUILD_SHARED, too, in the file that implements it. */
-#if !defined(LIGHTBIN_API)
-#if !defined(LIGHTBIN_SHARED)
+#if defined(LIGHTBIN_API)
+#elif !defined(LIGHTBIN_SHARED)
 #define LIGHTBIN_API
-#elif defined(_WIN32)
-#if defined(LIGHTBIN_BUILD_SHARED)
+#elif !defined(_WIN32)
+#define LIGHTBIN_API __attribute__((visibility("default")))
+#elif defined(LIGHTBIN_BUILD_SHARED)
 #define LIGHTBIN_API __declspec(dllexport)
 #else
 #define LIGHTBIN_API __declspec(dllimport)
-#endif
-#else
-#define LIGHTBIN_API __attribute__((visibility("default")))
-#endif
 #endif
 
 #if defined(__cplusplus)
@@ -91,7 +85,7 @@ typedef enum lightbin_error {
     LIGHTBIN_NO_BOUNDS_GIVEN = 8,  /* the binner's options read Z bounds */
     LIGHTBIN_NOT_READ = 9,         /* slices, Z bounds or a matrix were given that the options do not read */
     LIGHTBIN_BUFFER_TOO_SMALL = 10,
-    LIGHTBIN_CALLBACK_THREW = 11,  /* a C++ callback of the program threw an exception */
+    LIGHTBIN_CALLBACK_THREW = 11, /* a C++ callback of the program threw an exception */
     /* A grid is not at the beginning of the memory that another is copied behind it in */
     LIGHTBIN_OTHER_MEMORY = 12,
     LIGHTBIN_NO_SUCH_ISA = 13, /* an instruction set that this machine, or the library as it is compiled, lacks */
@@ -238,7 +232,7 @@ typedef struct lightbin_view_options {
     /* Of the viewport, 0 to 32768 pixels. An empty viewport, as of a minimised window, has no tiles and no lists: its
      * frames are to be skipped. */
     int32_t width, height;
-    int32_t tile_size;     /* side of a square tile in pixels, 1 or more; 0: 32 */
+    int32_t tile_size; /* side of a square tile in pixels, 1 or more; 0: 32 */
     /* Maps view space to clip space: any perspective or orthographic projection, also off-centre, with an infinite far
      * plane, with reversed Z, and of a right-handed or left-handed view space. Any other matrix is an error. */
     lightbin_matrix projection;
@@ -256,8 +250,7 @@ typedef struct lightbin_view lightbin_view;
  *
  * Errors: LIGHTBIN_MATRIX_NOT_FINITE to LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, which say what is wrong with the matrix, the
  * viewport or the tile size. */
-LIGHTBIN_API lightbin_result lightbin_view_create(const lightbin_view_options* options,
-                                                  lightbin_view** view);
+LIGHTBIN_API lightbin_result lightbin_view_create(const lightbin_view_options* options, lightbin_view** view);
 
 /* Gives a view another projection, viewport or tile size, as when the camera or the window changes. Allocates nothing.
  * Errors: those of lightbin_view_create(); the view is then as before. */
@@ -278,8 +271,8 @@ typedef struct lightbin_view_info {
     int32_t looks_transposed; /* the entry of 1 is where a transposed perspective matrix has it */
     /* An orthographic matrix that scales nothing: an identity, or the view matrix? */
     int32_t looks_like_view_matrix;
-    int32_t looks_turned;       /* upside down and mirrored: degrees where radians are wanted? */
-    int32_t looks_behind;       /* all orthographic depths are behind the eye: is reversed_z right? */
+    int32_t looks_turned;      /* upside down and mirrored: degrees where radians are wanted? */
+    int32_t looks_behind;      /* all orthographic depths are behind the eye: is reversed_z right? */
     int32_t looks_zero_to_one; /* no depth reaches NDC -1: is clip_depth right? */
     int32_t pixels_not_square; /* by more than 2 %: is the viewport's size stale, or the aspect inverted? */
     int32_t viewport_empty;    /* the width or the height is 0: were they given? */
@@ -294,13 +287,11 @@ LIGHTBIN_API size_t lightbin_view_text(const lightbin_view* view, char* text, si
 
 /* Computes where in the image a point of view space lies: x and y in pixels from the corner of the window origin, and
  * its view depth. Where the depth of a perspective view is 0 or less, x and y mean nothing. */
-LIGHTBIN_API lightbin_result lightbin_view_project(const lightbin_view* view, const double point[3],
-                                                   double image[3]);
+LIGHTBIN_API lightbin_result lightbin_view_project(const lightbin_view* view, const double point[3], double image[3]);
 
 /* Computes the point of view space that an image point (x, y, view depth) shows: the inverse of
  * lightbin_view_project(). The viewport must not be empty. */
-LIGHTBIN_API lightbin_result lightbin_view_unproject(const lightbin_view* view, const double image[3],
-                                                     double point[3]);
+LIGHTBIN_API lightbin_result lightbin_view_unproject(const lightbin_view* view, const double image[3], double point[3]);
 
 /* Computes the view depths that the window depths from `lower` to `upper` stand for, rounded outward: depths[0] is the
  * least of them, depths[1] the greatest. */
@@ -308,7 +299,7 @@ LIGHTBIN_API lightbin_result lightbin_view_depths(const lightbin_view* view, dou
                                                   float depths[2]);
 
 /* Returns the window depth of a view depth, up to rounding. NaN for an infinite view depth, or if view is null. */
-LIGHTBIN_API double lightbin_view_window_depth(const lightbin_view* view, double view_depth);
+LIGHTBIN_API float lightbin_view_window_depth(const lightbin_view* view, double view_depth);
 
 /* ---- Lights ---- */
 
@@ -317,7 +308,7 @@ LIGHTBIN_API double lightbin_view_window_depth(const lightbin_view* view, double
  */
 typedef struct lightbin_floats {
     const void* first; /* the first light's floats */
-    size_t stride; /* bytes from one light's floats to the next light's: not less than these floats take */
+    size_t stride;     /* bytes from one light's floats to the next light's: not less than these floats take */
 } lightbin_floats;
 
 /* Spheres outside of which lights give no light. A radius of +inf covers everything. A light whose radius is -1 is
@@ -360,12 +351,11 @@ typedef struct lightbin_boxes {
     lightbin_floats taper;
 } lightbin_boxes;
 
-/* The lights of a call, which are read in place. Ids number the arrays through: the id of a sphere is its position in
- * its array, ids of spots begin behind those of the spheres, and ids of boxes behind those of the spots. So in every
- * list the spheres come first, then the spots, then the boxes (with LIGHTBIN_Z_BINS ids are ranks, in order of depth).
- * Each kind costs what it costs alone.
+/* The lights of a call. Ids number the arrays through: the id of a sphere is its position in its array, ids of spots
+ * begin behind those of the spheres, and ids of boxes behind those of the spots.
  *
- * Spheres whose radius follows the centre, 16 bytes from one to the next (vec4s), are read without a copy. */
+ * Lights whose floats lie as in an array of lightbin_sphere (as vec4s do), lightbin_spot or lightbin_box are read
+ * without a copy. */
 typedef struct lightbin_lights {
     uint32_t size;
     uint32_t unused;
@@ -400,8 +390,7 @@ LIGHTBIN_API lightbin_result lightbin_slices_exponential(int32_t count, float fi
                                                          lightbin_slices** slices);
 LIGHTBIN_API lightbin_result lightbin_slices_linear(int32_t count, float begin, float end, float margin,
                                                     lightbin_slices** slices);
-LIGHTBIN_API lightbin_result lightbin_slices_from_boundaries(const float* boundaries, size_t count,
-                                                             float margin,
+LIGHTBIN_API lightbin_result lightbin_slices_from_boundaries(const float* boundaries, size_t count, float margin,
                                                              lightbin_slices** slices);
 LIGHTBIN_API void lightbin_slices_destroy(lightbin_slices* slices);
 
@@ -436,6 +425,8 @@ typedef struct lightbin_depth_buffer {
     /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. For opaque
      * surfaces alone: transparent ones are seen in front of the background, too. */
     int32_t skip_background;
+    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the bounds are the same */
+    int32_t unused;
 } lightbin_depth_buffer;
 
 /* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row. Where a pointer
@@ -445,24 +436,17 @@ typedef struct lightbin_z_bounds {
     uint32_t size;
     uint32_t unused;
     const float *min, *max;
-    size_t tiles;                 /* the number of floats in each array, the view's number of tiles or more */
+    size_t tiles; /* the number of floats in each array, the view's number of tiles or more */
 } lightbin_z_bounds;
 
-/* Memory for Z bounds: arrays of `tiles` floats for the bounds that are wanted, null for the others. */
-typedef struct lightbin_z_bounds_buffers {
-    uint32_t size;
-    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the result is the same */
-    float *min, *max;
-    size_t tiles;
-} lightbin_z_bounds_buffers;
-
-/* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors:
- * LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
+/* Reduces a depth buffer to the Z bounds of each tile.
+ *
+ * min, max  arrays of `tiles` floats that become lightbin_z_bounds::min and max; null: this bound is not wanted
+ *
+ * Errors: LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
  * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles; LIGHTBIN_NO_SUCH_ISA. */
-LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
-                                                   const lightbin_depth_buffer* buffer,
-                                                   const lightbin_z_bounds_buffers* out,
-                                                   lightbin_z_bounds* bounds);
+LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
+                                                   float* min, float* max, size_t tiles);
 
 /* ---- Binners ---- */
 
@@ -488,8 +472,8 @@ typedef struct lightbin_binner_options {
     /* Not 0: a light is listed in a tile only if it meets the tile's Z bounds and the box, in view space, around the
      * tile between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters. */
     int32_t depth_test;
-    int32_t slicing;  /* a lightbin_slicing */
-    int32_t isa;      /* a lightbin_isa: use no wider instructions than these; the lists are the same */
+    int32_t slicing; /* a lightbin_slicing */
+    int32_t isa;     /* a lightbin_isa: use no wider instructions than these; the lists are the same */
 } lightbin_binner_options;
 
 /* Bins lights into tiles, and keeps the memory that this takes. */
@@ -500,8 +484,7 @@ typedef struct lightbin_binner lightbin_binner;
  * options    null: the defaults, all 0
  *
  * Errors: LIGHTBIN_NO_SUCH_ISA. */
-LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
-                                                    lightbin_binner** binner);
+LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options, lightbin_binner** binner);
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
 
 /* The inputs of a call beside the lights. Slices are read with CLUSTERS and Z_BINS, bounds with a depth test unless
@@ -519,7 +502,8 @@ typedef struct lightbin_range {
     uint32_t offset, count;
 } lightbin_range;
 
-/* The least and greatest rank of the lights whose depths meet a z-bin; least > greatest if there is none. */
+/* With LIGHTBIN_Z_BINS, the least and greatest rank (place in the order of depth) of the lights that meet a slice;
+ * least > greatest if there is none. */
 typedef struct lightbin_bin_range {
     uint32_t least, greatest;
 } lightbin_bin_range;
@@ -542,8 +526,7 @@ typedef struct lightbin_grid {
     const uint32_t* order;
     const lightbin_bin_range* bins;
     uint64_t order_count, bin_count;
-    uint32_t first_spot,
-        first_box; /* ids below first_spot are spheres, from there to first_box spots, others boxes */
+    uint32_t first_spot, first_box; /* ids below first_spot are spheres, from there to first_box spots, others boxes */
 } lightbin_grid;
 
 /* Makes the lists. On success every cell's list has, in ascending order, the id of every light that meets the cell.
@@ -573,7 +556,7 @@ typedef struct lightbin_masks {
     /* All that a shader reads, to be uploaded as it is: mask_words; the masks of all columns, and an empty one; those
      * of all rows; 32 * mask_words ids, which are 0 beyond the lights in view; and the bins. */
     const uint32_t* words;
-    const uint32_t* ids; /* of the lights in view, in ascending order, or with z-bins in order of depth */
+    const uint32_t* ids;            /* of the lights in view, in ascending order, or with z-bins in order of depth */
     const lightbin_bin_range* bins; /* with z-bins, else null: for each the range in `ids` of the lights that meet it */
     uint64_t word_count, id_count, bin_count;
     uint32_t lights, rejected, culled, first_spot, first_box; /* as in lightbin_grid */
@@ -615,30 +598,26 @@ LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const 
  * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its
  * numbers: all offsets and ids must be inside of the arrays that they refer to. */
 
-/* Copies the ranges and ids of a grid to the beginning of the caller's memory, which is only written, in ascending
- * order, and so may be a mapped GPU buffer. On success grid->ranges and grid->ids refer to the copies. Errors:
- * LIGHTBIN_RANGE_BUFFER_TOO_SMALL and LIGHTBIN_ID_BUFFER_TOO_SMALL.
+/* Copies the ranges and ids of a grid to the caller's memory, which is only written, in ascending order, and so may be
+ * a mapped GPU buffer. On success *grid is the copy.
  *
- * range_capacity, id_capacity  how many ranges and ids there is memory for */
-LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, lightbin_range* ranges,
-                                                uint64_t range_capacity, void* ids, uint64_t id_capacity);
-
-/* Copies the ranges and ids of a grid behind those of other views, in the caller's memory, for shaders made with
- * lightbin_snippet_options::views. On success *grid is the grid of all views so far: its ranges are those of view 0,
- * then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts and ranks
- * are those of the last view. The memory is only written, in ascending order.
+ * Shaders made with lightbin_snippet_options::views read the grids of several views in one memory. The copy of each
+ * view after the first is written behind the others. *grid is then the grid of all views so far: its ranges are those
+ * of view 0, then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts
+ * and ranks are those of the last view.
  *
- * before  the grid of the views before, in the same memory: what lightbin_copy_grid() made of view 0, and this function
- *         of all later ones
+ * before                       the copy of the views before, in the same memory; null for the first view, or a single
+ *                              one
+ * range_capacity, id_capacity  how many ranges and ids there is memory for, in all views
  *
  * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
  * LIGHTBIN_OTHER_MEMORY, that of `before`; LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_ENTRIES, of all views, more
  * than 32 bits count; LIGHTBIN_RANGE_BUFFER_TOO_SMALL and LIGHTBIN_ID_BUFFER_TOO_SMALL. */
-LIGHTBIN_API lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* before,
-                                                  lightbin_range* ranges, uint64_t range_capacity, void* ids,
-                                                  uint64_t id_capacity);
+LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before,
+                                                lightbin_range* ranges, uint64_t range_capacity, void* ids,
+                                                uint64_t id_capacity);
 
-/* Makes unions of grids, in memory that it keeps. */
+/* Makes unions of grids, in memory that it keeps from call to call. */
 typedef struct lightbin_grid_union lightbin_grid_union;
 
 /* Makes a lightbin_grid_union, to be freed with lightbin_grid_union_destroy(). */
@@ -656,7 +635,7 @@ LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
 LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
                                                   const lightbin_grid* second, lightbin_grid* grid);
 
-/* Limits the lists of grids, in memory that it keeps. */
+/* Shortens the lists of grids, in memory that it keeps from call to call. */
 typedef struct lightbin_budget lightbin_budget;
 
 /* Makes a lightbin_budget, to be freed with lightbin_budget_destroy(). */
@@ -687,14 +666,13 @@ typedef struct lightbin_cut {
 #define LIGHTBIN_NO_LIMIT 0xffffffffu
 LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid,
                                                  const float* weights, size_t weight_count, uint32_t per_cell,
-                                                 uint32_t per_frame, lightbin_grid* limited,
-                                                 lightbin_cut* cut);
+                                                 uint32_t per_frame, lightbin_grid* limited, lightbin_cut* cut);
 
 /* Writes to `entries` in how many cells each light is listed, by its id as lightbin_lights numbers it, with
  * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors:
  * LIGHTBIN_LIGHT_BUFFER_TOO_SMALL, fewer elements than grid->lights. */
-LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries,
-                                                    size_t capacity, uint32_t* listed);
+LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries, size_t capacity,
+                                                    uint32_t* listed);
 
 /* Counts the lengths of a grid's lists. histogram[0] counts the lists without lights, histogram[k] those with 2^(k-1)
  * to 2^k - 1 lights. */
@@ -711,9 +689,9 @@ typedef enum lightbin_encoding {
 
 typedef struct lightbin_format {
     uint32_t size;
-    int32_t encoding;    /* a lightbin_encoding */
-    int32_t ids;         /* a lightbin_ids */
-    uint32_t capacity;   /* for SENTINEL: the ids that a tile has memory for, 1 or more */
+    int32_t encoding;  /* a lightbin_encoding */
+    int32_t ids;       /* a lightbin_ids */
+    uint32_t capacity; /* for SENTINEL: the ids that a tile has memory for, 1 or more */
 } lightbin_format;
 
 /* What lightbin_encode() left out of lists that are longer than the capacity of a sentinel format. */
@@ -726,15 +704,15 @@ typedef struct lightbin_encoded {
 } lightbin_encoded;
 
 /* Computes how many bytes lightbin_encode() needs for so many tiles and list entries. */
-LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* format, uint64_t tiles,
-                                                    uint64_t entries, uint64_t* bytes);
+LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* format, uint64_t tiles, uint64_t entries,
+                                                    uint64_t* bytes);
 
 /* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
  * grid->ranges still index. Every list is complete, except that the sentinel format cuts lists that are longer than its
  * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN, of the format; LIGHTBIN_IDS_TOO_NARROW, an id is
  * too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
-LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format,
-                                             void* out, uint64_t out_bytes, lightbin_encoded* encoded);
+LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format, void* out,
+                                             uint64_t out_bytes, lightbin_encoded* encoded);
 
 /* ---- Shader text that reads the lists ---- */
 
@@ -771,7 +749,7 @@ typedef struct lightbin_snippet_options {
     int32_t slicing;               /* a lightbin_slicing, that of the binner */
     const lightbin_format* format; /* of the lists; null: those of a binner whose ids have 32 bits */
     const char* prefix;            /* every name in the text begins with it; null: "lightbin_" */
-    int32_t tile_size; /* in pixels, fixed in the text; 0: read at run time from the constant `grid` */
+    int32_t tile_size;             /* in pixels, fixed in the text; 0: read at run time from the constant `grid` */
     /* Read the ranges from a uniform block, and only the ids from `storage` */
     int32_t tiles_in_uniform_block;
     int32_t packed_ids;      /* texels of 32 bits hold several ids of 8 or 16 bits, as storage buffers do */
@@ -805,12 +783,11 @@ typedef struct lightbin_shader lightbin_shader;
  * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
  * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
  * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
- * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, LIGHTBIN_VIEWS_OUT_OF_RANGE,
- * LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW, of the format;
- * LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
+ * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE,
+ * LIGHTBIN_VIEWS_OUT_OF_RANGE, LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
+ * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
-LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
-                                                     lightbin_shader** shader);
+LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options, lightbin_shader** shader);
 LIGHTBIN_API void lightbin_shader_destroy(lightbin_shader* shader);
 
 /* Returns the text, which ends with a 0. Valid as long as the shader; null if shader is null. */
@@ -858,8 +835,8 @@ typedef struct lightbin_grid_constants {
     uint32_t tile_size, tiles_x, width, height;
     int32_t corner_x, corner_y, unused[2];
 } lightbin_grid_constants;
-LIGHTBIN_API lightbin_result lightbin_get_grid_constants(const lightbin_view* view, int32_t corner_x,
-                                                  int32_t corner_y, lightbin_grid_constants* constants);
+LIGHTBIN_API lightbin_result lightbin_get_grid_constants(const lightbin_view* view, int32_t corner_x, int32_t corner_y,
+                                              lightbin_grid_constants* constants);
 
 /* The constants `image` and `depths` that the text's function `check_view` reads.
  *
@@ -868,12 +845,11 @@ typedef struct lightbin_view_constants {
     float scale_x, scale_y, offset_x, offset_y, forward, perspective, nearest, tolerance;
 } lightbin_view_constants;
 LIGHTBIN_API lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tolerance,
-                                                  lightbin_view_constants* constants);
+                                              lightbin_view_constants* constants);
 
 /* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors:
  * LIGHTBIN_BUFFER_TOO_SMALL. */
-LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slices, uint32_t* words,
-                                                    size_t capacity);
+LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slices, uint32_t* words, size_t capacity);
 
 /* ---- Shaders that reduce depth on the GPU ---- */
 
@@ -901,8 +877,7 @@ typedef struct lightbin_reduce_options {
  * device does not allow: LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_MULTISAMPLE_TEXTURES,
  * LIGHTBIN_SAMPLES_OUT_OF_RANGE, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS,
  * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
-LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
-                                                    lightbin_shader** shader);
+LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, lightbin_shader** shader);
 
 /* The constants `grid`, `planes` and `corner` of lightbin_reduce_shader(), with the layout of its uniform block. */
 typedef struct lightbin_reduce_constants {
@@ -911,7 +886,7 @@ typedef struct lightbin_reduce_constants {
     int32_t corner_x, corner_y, unused_corner[2];
 } lightbin_reduce_constants;
 LIGHTBIN_API lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, int32_t corner_x,
-                                                    int32_t corner_y, lightbin_reduce_constants* constants);
+                                                           int32_t corner_y, lightbin_reduce_constants* constants);
 
 /* ---- Shaders that make light grids on the GPU of lights there ---- */
 
@@ -926,16 +901,14 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_MASKS = 5    /* in place of count to fill: writes masks of the columns and rows of tiles */
 } lightbin_cull_pass;
 
-/* What the lights in the buffer are. Boxes are binned on the CPU. */
+/* The kind of lights that lightbin_cull_shader() bins on the GPU. Boxes are binned on the CPU. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
     LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */
 } lightbin_cull_kind;
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
- * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by
- * default at bindings below 4, 128 invocations in a group and 9 KB of shared memory; none uses subgroups, and no group
- * waits for another. */
+ * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: docs/gpu.md says what they use. */
 typedef struct lightbin_cull_options {
     uint32_t size;
     int32_t language;   /* a lightbin_shader_language */
@@ -975,31 +948,30 @@ typedef struct lightbin_cull_options {
  * Errors name the option that the language or the passes do not allow: LIGHTBIN_NO_STORAGE_BUFFERS,
  * LIGHTBIN_IDS_TOO_NARROW, LIGHTBIN_NO_SUCH_SLICING_SHADER, LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_SLOT_OUT_OF_RANGE,
  * LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP. */
-LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
-                                                  lightbin_shader** shader);
+LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options, lightbin_shader** shader);
 
 /* The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535. */
 typedef struct lightbin_cull_groups {
     uint32_t x, y;
 } lightbin_cull_groups;
 
-/* All that a program needs to run the passes for a view. */
+/* All that a program needs to run the shaders of lightbin_cull_shader() for a view. */
 typedef struct lightbin_cull_plan {
     uint32_t size;
     uint32_t unused;
     /* The sizes of the buffers of a build, in bytes, each a multiple of 4 and at least 16. They need no initial
      * content. */
-    uint64_t scratch_bytes; /* the first words of `scratch` are lightbin_cull_totals afterwards */
-    uint64_t tile_bytes;    /* of `tiles`: a lightbin_range for each cell */
-    uint64_t list_bytes;    /* of `lists`: the ids */
-    uint64_t mask_bytes;    /* of `lists`, where it is for the pass masks */
+    uint64_t scratch_bytes;         /* the first words of `scratch` are lightbin_cull_totals afterwards */
+    uint64_t tile_bytes;            /* of `tiles`: a lightbin_range for each cell */
+    uint64_t list_bytes;            /* of `lists`: the ids */
+    uint64_t mask_bytes;            /* of `lists`, where it is for the pass masks */
     lightbin_cull_groups groups[6]; /* by lightbin_cull_pass */
     /* The content of the uniform block `grid`, all 256 bytes. Its layout is that of the texts of the same version of
      * lightbin: make both in the same program. */
     uint32_t constants[64];
 } lightbin_cull_plan;
 
-/* What the passes leave in the first words of `scratch`. */
+/* What the shaders of lightbin_cull_shader() leave in the first words of the buffer `scratch`. */
 typedef struct lightbin_cull_totals {
     uint32_t entries;  /* of the complete lists, at most 2^32 - 1; undefined if there are masks */
     uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
@@ -1025,9 +997,8 @@ typedef struct lightbin_cull_totals {
  * more than 65,535; LIGHTBIN_TOO_MANY_LIGHTS for the ids; LIGHTBIN_SCRATCH_TOO_LARGE, more than 2^32 - 1 words;
  * LIGHTBIN_TOO_MANY_ENTRIES, masks of more words than that; LIGHTBIN_NOT_READ, slices or a matrix that the options do
  * not read. */
-LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
-                                                const lightbin_cull_options* options, uint32_t lights,
-                                                uint32_t entries, const lightbin_slices* slices,
+LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cull_options* options,
+                                                uint32_t lights, uint32_t entries, const lightbin_slices* slices,
                                                 const lightbin_matrix* to_view, lightbin_cull_plan* plan);
 
 /* The ends of an interval: the sides of a tile column or row, or the view depths of a slice. */
@@ -1035,11 +1006,11 @@ typedef struct lightbin_edges {
     float low, high;
 } lightbin_edges;
 
-/* Write what the passes read in the buffer `z_bounds` with a depth test: the two sides of each tile column and then of
- * each tile row; the depths of the slices. *count is their number. If the memory is too small, the error is
- * LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
-LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges,
-                                                   size_t capacity, size_t* count);
+/* Write what the shaders of lightbin_cull_shader() read in the buffer `z_bounds` with a depth test: the two sides of
+ * each tile column and then of each tile row; the depths of the slices. *count is their number. If the memory is too
+ * small, the error is LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
+LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, size_t capacity,
+                                                   size_t* count);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity, size_t* count);
 
@@ -1076,21 +1047,18 @@ LIGHTBIN_API lightbin_result lightbin_tube_sphere(const float a[3], const float 
 /* Computes the least sphere that contains all points within `range` of a rectangle, such as an area light. The half
  * axes are vectors from its centre to the middles of two adjacent sides. */
 LIGHTBIN_API lightbin_result lightbin_rectangle_sphere(const float centre[3], const float half_x[3],
-                                                       const float half_y[3], float range,
-                                                       lightbin_sphere* sphere);
+                                                       const float half_y[3], float range, lightbin_sphere* sphere);
 
 /* Makes a whole box, such as a decal's or a reflection probe's, with a sphere around its corners.
  *
  * half_axes  three vectors, one after another, from the centre to the middles of three faces */
-LIGHTBIN_API lightbin_result lightbin_oriented_box(const float centre[3], const float half_axes[9],
-                                                lightbin_box* box);
+LIGHTBIN_API lightbin_result lightbin_oriented_box(const float centre[3], const float half_axes[9], lightbin_box* box);
 
 /* Makes a whole box of the image of a cube under an affine transform, as engines keep decals and probes.
  *
  * transform  from the cube's space to that of the lights
  * half_side  half of the cube's side: 1 for the cube from -1 to 1, 0.5 for the cube from -0.5 to 0.5 */
-LIGHTBIN_API lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side,
-                                               lightbin_box* box);
+LIGHTBIN_API lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side, lightbin_box* box);
 
 /* Makes a box of the half of a sphere where an area light shines. A sphere that reaches beyond the range of floats, as
  * with an infinite radius, is kept whole.
@@ -1105,14 +1073,12 @@ LIGHTBIN_API lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere,
  * forward         vector from the eye to the middle of the far face
  * half_x, half_y  vectors from there to the middles of two sides of the far face
  * begin           where the frustum begins, as a fraction of `forward`: 0 for the whole pyramid, below 1 */
-LIGHTBIN_API lightbin_result lightbin_projector_box(const float eye[3], const float forward[3],
-                                                    const float half_x[3], const float half_y[3],
-                                                    double begin, lightbin_box* box);
+LIGHTBIN_API lightbin_result lightbin_projector_box(const float eye[3], const float forward[3], const float half_x[3],
+                                                    const float half_y[3], double begin, lightbin_box* box);
 
 /* Makes a box, cut by lightbin_tube_sphere(), that contains all points within `radius` of the line from a to b. It is
  * listed in fewer tiles than that sphere. */
-LIGHTBIN_API lightbin_result lightbin_tube_box(const float a[3], const float b[3], float radius,
-                                               lightbin_box* box);
+LIGHTBIN_API lightbin_result lightbin_tube_box(const float a[3], const float b[3], float radius, lightbin_box* box);
 
 /* ---- Lights' ranges ---- */
 

@@ -8,16 +8,10 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-enum class ShaderStage : std::uint8_t { compute, fragment };
-
-constexpr const char* to_string(ShaderStage value) {
-    return detail::name_at(value, {"compute", "fragment"});
-}
-
 /// What reduce_shader() generates.
 struct ReduceOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
-    ShaderStage stage = ShaderStage::compute;
+    bool fragment = false;      ///< a fragment shader, not a compute shader
     int samples = 1;            ///< samples per pixel of the depth texture, 1 to 8
     bool reversed_z = false;    ///< View::reversed_z()
     bool orthographic = false;  ///< View::orthographic()

@@ -40,11 +40,12 @@ else
 fi
 
 # Errors that a call of contract.c is refused with are among those that the comment of its function lists, or that the
-# header's conventions give to all functions; and every error is listed somewhere. The causes that C++ has, too, have the
-# same names in the same order there. Each member of a struct of options is read.
-python3 - "$header" "$here/contract.c" "$here"/../../include/lightbin/error_code.hpp "$here"/../../include/lightbin/detail/c/*.hpp <<'END'
+# header's conventions give to all functions; and every error is listed somewhere. The enums have the
+# names and numbers of those of C++. Each member of a struct of options is read.
+python3 - "$header" "$here/contract.c" "$here"/../../include/lightbin/*.hpp "$here"/../../include/lightbin/detail/c/*.hpp <<'END'
 import re, sys
-header, contract, error_code, *implementation = (open(name).read() for name in sys.argv[1:])
+header, contract, *cpp = (open(name).read() for name in sys.argv[1:])
+cpp = re.sub("//.*", "", "".join(cpp))
 names = re.findall(r"(LIGHTBIN_\w+) *=", re.search(r"typedef enum lightbin_error \{(.*?)\}", header, re.S).group(1))
 def named(text):
     found = {name for name in re.findall(r"LIGHTBIN_\w+", text) if name in names}
@@ -69,12 +70,23 @@ for check in re.findall(r"CHECK\((.*?)\);", contract, re.S):  # null arguments a
         if call.group(2) not in of_all | listed[call.group(1)]: wrong.append(call.group(1) + ": " + call.group(2))
 assert calls > 60, calls
 assert not wrong, wrong
-causes = [name.lower()[len("lightbin_"):] for name in names[names.index("LIGHTBIN_MATRIX_NOT_FINITE"):-1]]
-assert causes == re.findall(r"^    (\w+)(?: = 100)?,$", error_code, re.M)
 plain = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
+in_cpp = []
+for body in re.findall(r"enum class \w+ : std::uint8_t \{(.*?)\}", cpp, re.S):
+    values, number = {}, -1
+    for value, given in re.findall(r"(\w+)(?: = (\d+))?", body):
+        number = int(given or number + 1)
+        values[value] = number
+    in_cpp.append(values)
+in_c_alone = {"LIGHTBIN_WIDEST", *names[:names.index("LIGHTBIN_MATRIX_NOT_FINITE")], names[-1]}
+for name, body in re.findall(r"typedef enum lightbin_(\w+) \{(.*?)\}", plain, re.S):
+    values = [value for value in re.findall(r"(\w+) = (\d+)", body) if value[0] not in in_c_alone]
+    bare = {re.sub("^lightbin_(resource_|cull_)?", "", value.lower()).replace("no_slicing", "none"): int(number)
+            for value, number in values}
+    assert bare in in_cpp, (name, bare)
 for name, body in re.findall(r"typedef struct lightbin_(\w+_options|format|depth_buffer) \{(.*?)\} lightbin_\1;", plain, re.S):
     for member in re.findall(r"(\w+)\s*(?=[,;])", body):
-        assert member in ("size", "unused") or re.search(rf"(given\.|MEMBER\(){member}\b", "".join(implementation)), member
+        assert member in ("size", "unused") or re.search(rf"(given\.|structs\.|MEMBER\(){member}\b", cpp), member
 END
 
 # Each function that the header declares is there.

@@ -350,13 +350,13 @@ static void test_binners(void) {
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
     CHECK(grid.range_count == tile_count && grid.id_count > 0 && grid.lights == light_count);
     ids = (uint32_t*)malloc((size_t)grid.id_count * sizeof *ids);
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count - 1, ids, grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count - 1, ids, grid.id_count).error ==
           LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count - 1).error ==
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count - 1).error ==
           LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    NEEDS(lightbin_copy_grid(&grid, ranges, tile_count, NULL, grid.id_count), "ids");
-    NEEDS(lightbin_copy_grid(NULL, ranges, tile_count, ids, 1), "grid");
-    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
+    NEEDS(lightbin_copy_grid(&grid, NULL, ranges, tile_count, NULL, grid.id_count), "ids");
+    NEEDS(lightbin_copy_grid(NULL, NULL, ranges, tile_count, ids, 1), "grid");
+    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
     {
         lightbin_format format;
         lightbin_encoded encoded;
@@ -374,7 +374,7 @@ static void test_binners(void) {
         CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_LIST_BUFFER_TOO_SMALL);
         NEEDS(lightbin_encode(&grid, &format, NULL, 9, &encoded), "out");
         grid.id_bytes = 3;
-        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 9, &encoded), LIGHTBIN_NOT_A_VALUE,
+        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 0, &encoded), LIGHTBIN_NOT_A_VALUE,
                       "grid.id_bytes"));
     }
     free(ids);
@@ -524,22 +524,21 @@ static void test_grids(void) {
     ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
     other = grid;
     both = grid;
-    CHECK(lightbin_copy_grid(&other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
-    NEEDS(lightbin_append_grid(&both, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count), "before");
-    CHECK(refuses(lightbin_append_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+    CHECK(lightbin_copy_grid(&other, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_copy_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
                   LIGHTBIN_OTHER_MEMORY, "before"));
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
           LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
           LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    CHECK(refuses(lightbin_append_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
+    CHECK(refuses(lightbin_copy_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
                   "before"));
     CHECK(ranges[tile_count].count == 0 && both.ids == grid.ids);
     other.tiles_x = 13;
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
           LIGHTBIN_GRIDS_DIFFER);
     other.tiles_x = 20;
-    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
           LIGHTBIN_OK);
     options.ids = LIGHTBIN_U16;
     if (lightbin_binner_create(&options, &sixteen).error == LIGHTBIN_OK) {
@@ -547,7 +546,7 @@ static void test_grids(void) {
         CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
         CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &narrow, &both), LIGHTBIN_NOT_A_VALUE,
                       "second.id_bytes"));
-        CHECK(refuses(lightbin_append_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+        CHECK(refuses(lightbin_copy_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
                       LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
     }
     free(ids);
@@ -566,36 +565,44 @@ static void test_depth(void) {
     static float depth[width * height];
     float min[tile_count], max[tile_count];
     lightbin_depth_buffer buffer;
-    lightbin_z_bounds_buffers out;
-    lightbin_z_bounds bounds;
     CLEAR(buffer);
-    CLEAR(out);
-    CLEAR(bounds);
     buffer.depth = depth;
     buffer.count = width * height;
-    out.min = min;
-    out.max = max;
-    out.tiles = tile_count;
     CHECK(lightbin_view_create(&options, &view).error == LIGHTBIN_OK);
-    NEEDS(lightbin_reduce_depth(view, NULL, &out, &bounds), "buffer");
+    NEEDS(lightbin_reduce_depth(view, NULL, min, max, tile_count), "buffer");
     buffer.samples = 9;
-    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_SAMPLES_OUT_OF_RANGE);
+    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_SAMPLES_OUT_OF_RANGE);
     buffer.samples = 2;
-    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_DEPTH_BUFFER_TOO_SMALL);
+    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_DEPTH_BUFFER_TOO_SMALL);
     buffer.samples = 1;
     buffer.row_pitch = 3;
-    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_ROW_PITCH_TOO_SMALL);
+    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_ROW_PITCH_TOO_SMALL);
     buffer.row_pitch = 0;
     buffer.format = 7;
-    CHECK(
-        refuses(lightbin_reduce_depth(view, &buffer, &out, &bounds), LIGHTBIN_NOT_A_VALUE, "buffer.format"));
+    CHECK(refuses(lightbin_reduce_depth(view, &buffer, min, max, tile_count), LIGHTBIN_NOT_A_VALUE,
+                  "buffer.format"));
     buffer.format = LIGHTBIN_UNORM24;
-    out.tiles = 5;
-    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
-    out.tiles = tile_count;
-    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_OK);
-    CHECK(bounds.min == min && bounds.max == max && bounds.tiles == tile_count);
+    CHECK(lightbin_reduce_depth(view, &buffer, NULL, max, 5).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
+    max[0] = 0;
+    CHECK(lightbin_reduce_depth(view, &buffer, min, NULL, tile_count).error == LIGHTBIN_OK && max[0] == 0);
+    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_OK && max[0] > 0);
     lightbin_view_destroy(view);
+}
+
+/* Shaders that read lists. */
+static void test_snippet(void) {
+    lightbin_snippet_options options;
+    lightbin_shader* shader = NULL;
+    CLEAR(options);
+    NEEDS(lightbin_shader_snippet(NULL, &shader), "options");
+    NEEDS(lightbin_shader_snippet(&options, NULL), "shader");
+    options.masks = 1;
+    options.slicing = LIGHTBIN_CLUSTERS;
+    CHECK(lightbin_shader_snippet(&options, &shader).error == LIGHTBIN_NO_SUCH_SLICING_SHADER);
+    options.masks = 0;
+    options.tile_size = -1;
+    CHECK(lightbin_shader_snippet(&options, &shader).error == LIGHTBIN_TILE_SIZE_OUT_OF_RANGE);
+    CHECK(shader == NULL);
 }
 
 /* The shaders that make grids on the GPU of lights there, and their plans. */
@@ -800,6 +807,7 @@ int main(void) {
     test_shapes();
     test_grids();
     test_depth();
+    test_snippet();
     test_cull();
     CHECK(use_everything(&sum).error == LIGHTBIN_OK && sum != 0);
 #if defined(COUNTED_MEMORY)

@@ -98,9 +98,9 @@ void use_grid(const lightbin_grid& grid, lightbin_budget* budget, lightbin_grid_
         std::vector<lightbin_range> ranges(grid.range_count + limited.range_count);
         std::vector<char> ids((grid.id_count + limited.id_count) * grid.id_bytes);
         lightbin_grid first = grid;
-        if (succeeded(lightbin_copy_grid(&first, ranges.data(), ranges.size(), ids.data(),
+        if (succeeded(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(),
                                          ids.size() / grid.id_bytes)) &&
-            succeeded(lightbin_append_grid(&limited, &first, ranges.data(), ranges.size(), ids.data(),
+            succeeded(lightbin_copy_grid(&limited, &first, ranges.data(), ranges.size(), ids.data(),
                                            ids.size() / grid.id_bytes)))
             check_grid(limited);
     }
@@ -306,7 +306,7 @@ void use_calls(Bytes bytes) {
                         "coverage of other lights");
             std::vector<lightbin_range> ranges(grid.range_count);
             std::vector<char> ids(grid.id_count * grid.id_bytes);
-            if (succeeded(lightbin_copy_grid(&grid, ranges.data(), ranges.size(), ids.data(), grid.id_count)))
+            if (succeeded(lightbin_copy_grid(&grid, nullptr, ranges.data(), ranges.size(), ids.data(), grid.id_count)))
                 check_grid(grid);
         }
         left += bytes.byte();

@@ -353,7 +353,7 @@ void fuzz_reduction(Bytes& bytes) {
     ReduceOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
-    options.stage = take_enum(bytes, ShaderStage::fragment);
+    options.fragment = bytes.byte() % 2 != 0;
     options.format = take_enum(bytes, DepthFormat::unorm16);
     options.samples = static_cast<int>(bytes.byte() % 12) - 1;
     const unsigned flags = bytes.byte();
@@ -365,7 +365,7 @@ void fuzz_reduction(Bytes& bytes) {
     options.push_constants = (flags & 32) != 0;
     take_rest(bytes, options, {&options.depth, &options.z_bounds, &options.grid}, question);
 
-    const bool compute = options.stage == ShaderStage::compute;
+    const bool compute = !options.fragment;
     if (compute && Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.samples < 1 || options.samples > 8) question.reasons.insert(ErrorCode::samples_out_of_range);
     if (options.samples > 1 && options.language == ShaderLanguage::essl_300)

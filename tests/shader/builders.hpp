@@ -22,14 +22,14 @@
 inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<ReduceOptions> every;
-    for (const ShaderStage stage : {ShaderStage::compute, ShaderStage::fragment})
+    for (const bool fragment : {false, true})
         for (const int samples : {1, 4})
             for (const DepthFormat format :
                  {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
                 for (unsigned switches = 0; switches < 64; ++switches) {
                     ReduceOptions options;
                     options.language = language;
-                    options.stage = stage;
+                    options.fragment = fragment;
                     options.samples = samples;
                     options.format = format;
                     options.reversed_z = switches & 1;
@@ -194,7 +194,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
                std::to_string(static_cast<int>(options.format)) + ", " + std::to_string(samples) +
                " samples, " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
                std::to_string(tile_size);
-    job.stage = options.stage == ShaderStage::compute ? Stage::compute : Stage::fragment;
+    job.stage = options.fragment ? Stage::fragment : Stage::compute;
     job.groups = {static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y())};
     job.width = job.groups[0];
     job.height = job.groups[1];
@@ -235,7 +235,7 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
     using namespace lightbin;
     std::vector<Job> jobs;
     int turn = 0;
-    for (const ShaderStage stage : {ShaderStage::compute, ShaderStage::fragment})
+    for (const bool fragment : {false, true})
         for (const int samples : {1, 4})
             for (const DepthFormat format :
                  {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
@@ -243,7 +243,7 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
                     for (int camera = 0; camera < camera_count; ++camera) {
                         ReduceOptions options;
                         options.language = language;
-                        options.stage = stage;
+                        options.fragment = fragment;
                         options.samples = samples;
                         options.format = format;
                         options.skip_background = skip;

@@ -34,7 +34,7 @@ inline Job reduction_text_job(const lightbin::ReduceOptions& options) {
     lightbin::ShaderText shader = *reduce_shader(options);
     shader.text = version_line(options.language) + shader.text;
     Job job = text_job("a reduction", options.language,
-                       options.stage == lightbin::ShaderStage::compute ? Stage::compute : Stage::fragment,
+                       options.fragment ? Stage::fragment : Stage::compute,
                        std::move(shader), options.samples);
     job.within = {{0, 0}};  // it writes floats
     return job;

@@ -11,6 +11,7 @@
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 
+#include <atomic>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -52,7 +53,7 @@ inline constexpr const char* sentences[] = {
 };
 static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_NO_SUCH_ISA + 1);
 
-/// Returns the sentence of a result, with the name and the numbers filled in.
+/// Returns an English sentence for a result, with its name and numbers filled in.
 inline Text text_of(const lightbin_result& result) {
     if (result.error >= LIGHTBIN_MATRIX_NOT_FINITE && result.error <= LIGHTBIN_SCRATCH_TOO_LARGE)
         return Error{static_cast<ErrorCode>(result.error), result.needed, result.available}.message();
@@ -78,11 +79,9 @@ inline std::size_t write_text(const char* text, std::size_t length, char* to, st
     return length;
 }
 
-/// The greatest `size` that is followed, so that one of chance is not followed through the caller's memory.
+/// The greatest `size` of a caller's struct, which may be any number if the caller did not set it: memory further
+/// behind the struct is not read.
 inline constexpr std::uint32_t max_size = 1024;
-
-/// The size of a struct in the first version of lightbin.h that had it. A struct that has grown since is named here.
-template <class Struct> inline constexpr std::size_t first_size = sizeof(Struct);
 
 /// Returns why the `size` of a caller's struct is refused. The struct may be longer than the library's, if the members
 /// that the library does not know are 0.
@@ -91,37 +90,33 @@ template <class Struct> lightbin_result check_size(const Struct* given, const ch
     static_assert(sizeof(Struct) <= max_size);
     std::uint32_t size = 0;
     std::memcpy(&size, given, sizeof size);
-    bool known = size >= first_size<Struct> && size <= max_size;
+    bool known = size >= sizeof(Struct) && size <= max_size;
     for (std::size_t i = sizeof(Struct); known && i < size; ++i)
         known = reinterpret_cast<const unsigned char*>(given)[i] == 0;
     return known ? succeeded() : refused(LIGHTBIN_WRONG_SIZE, name, size, sizeof(Struct));
 }
 
-/// Copies a caller's struct to `known`; members that an older struct lacks become 0.
+/// Copies the members of a caller's struct that the library knows, or returns why its `size` is refused.
 template <class Struct> lightbin_result read(const Struct* given, Struct& known, const char* name) {
     const lightbin_result result = check_size(given, name);
-    if (result.error != LIGHTBIN_OK) return result;
-    const std::size_t given_bytes = detail::min_of<std::size_t>(given->size, sizeof known);
-    std::memcpy(&known, given, given_bytes);
-    std::memset(reinterpret_cast<char*>(&known) + given_bytes, 0, sizeof known - given_bytes);
+    if (result.error == LIGHTBIN_OK) known = *given;
     return result;
 }
 
-/// Copies a struct to the caller's, as far as that has the members. The caller's keeps its `size`, which was checked.
-template <class Struct> lightbin_result write(const std::type_identity_t<Struct>& known, Struct* to) {
-    const std::uint32_t size = to->size;
-    std::memcpy(to, &known, detail::min_of<std::size_t>(size, sizeof known));
-    to->size = size;
+/// Copies a struct to the caller's, which keeps its `size`.
+template <class Struct> lightbin_result write(std::type_identity_t<Struct> known, Struct* to) {
+    known.size = to->size;
+    *to = known;
     return succeeded();
 }
 
-/// Returns why a number that a caller gave is refused.
+/// Returns the error that a number is none of its enum's values.
 inline lightbin_result not_a_value(std::int32_t given, const char* name) {
     return refused(LIGHTBIN_NOT_A_VALUE, name, static_cast<std::uint64_t>(std::int64_t{given}));
 }
 
-// read_member() reads a member of a caller's struct: 0 leaves the default. Enums have the same numbers on both sides, and
-// to_string() has a name for each.
+// read_member() reads a member of a caller's struct: 0 leaves the default. Enums have the same numbers on both sides,
+// and to_string() has a name for each.
 inline lightbin_result read_member(std::int32_t given, bool& known, const char*) {
     known = given != 0;
     return succeeded();
@@ -150,8 +145,8 @@ inline lightbin_result read_member(std::int32_t given, Isa& known, const char* n
                ? result
                : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
-/// Copies the member `name` of the caller's C struct `given` to the C++ struct `known`. Returns why its value is refused,
-/// or a success.
+/// Copies the member `name` of the C struct `given` to the C++ struct `known`. Returns why its value is refused, or a
+/// success.
 #define LIGHTBIN_MEMBER(name) read_member(given.name, known.name, "options." #name)
 
 /// Returns the first of several results that is an error, or a success.
@@ -170,6 +165,11 @@ inline lightbin_result check_pointers(std::initializer_list<Needed> pointers) {
     for (const Needed& each : pointers)
         if (each.pointer == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, each.name);
     return succeeded();
+}
+
+/// Returns why an array is refused, which may be null only if it has no elements.
+inline lightbin_result check_array(const void* array, std::uint64_t count, const char* name) {
+    return array == nullptr && count > 0 ? refused(LIGHTBIN_NULL_ARGUMENT, name) : succeeded();
 }
 
 /// Returns `checked` if that is an error, else what body() returns, a lightbin_result. No exception leaves.
@@ -197,9 +197,12 @@ lightbin_result make_handle(Handle** handle, Arguments&&... arguments) {
     return succeeded();
 }
 
-/// Returns the address of objects of one side as that of the other side's, which have the same members in the same order.
+/// Returns the address of objects of one side as that of the other side's, which have the same members in the same
+/// order. The compiler must not reorder accesses by the two types, which it takes for different objects: the fence,
+/// which makes no instruction, lies between those that precede the call and those that follow it.
 template <class To, class From> auto* same_layout(From* from) {
     static_assert(sizeof(To) == sizeof(From) && alignof(To) == alignof(From));
+    std::atomic_signal_fence(std::memory_order_seq_cst);
     return reinterpret_cast<std::conditional_t<std::is_const_v<From>, const To, To>*>(from);
 }
 

@@ -8,12 +8,10 @@
 #include <lightbin/detail/c/views.hpp>
 #include <lightbin/masks.hpp>
 
-#include <atomic>
-
 namespace lightbin {
 namespace c {
 
-/// Returns the name of the define that leaves out the code for options, or null if the program has it.
+/// Returns the name of the define that leaves out code that a binner with these options needs, or null if none does.
 constexpr const char* left_out([[maybe_unused]] const Options& options) {
 #if defined(LIGHTBIN_NO_U16)
     if (options.ids == IdWidth::u16) return "LIGHTBIN_NO_U16";
@@ -30,21 +28,21 @@ constexpr const char* left_out([[maybe_unused]] const Options& options) {
     return nullptr;
 }
 
-/// How a binner works whose options are set at run time. So the stages stand in the program once, and not once for each
-/// combination of options as those of Binners do; only the kernels do. See detail::FixedHow.
+/// The options of a binner, set at run time: the argument of the template detail::Stages, for which a C++ Binner has a
+/// detail::FixedHow. So the program has the code of the stages once, not once for each combination of options.
 struct AnyHow {
-    static constexpr detail::OptionCode may = {
-        .u16 = left_out(Options{.ids = IdWidth::u16}) == nullptr,
-        .u32 = true,
-        .depth_test = left_out(Options{.depth_test = true}) == nullptr,
-        .clusters = left_out(Options{.slicing = Slicing::clusters}) == nullptr,
-        .z_bins = left_out(Options{.slicing = Slicing::z_bins}) == nullptr};
     Options is;
 
+    template <class Value> static constexpr bool may(Value Options::*option, Value value = Value(true)) {
+        Options options;
+        options.*option = value;
+        return left_out(options) == nullptr;
+    }
+
     template <class Id, detail::LightKind kind> detail::ListKernels<Id> kernels() const {
-        if constexpr (may.depth_test)
+        if constexpr (may(&Options::depth_test))
             if (is.depth_test) {
-                if constexpr (may.clusters)
+                if constexpr (may(&Options::slicing, Slicing::clusters))
                     if (is.slicing == Slicing::clusters) return detail::list_kernels<Id, true, true, kind>();
                 return detail::list_kernels<Id, true, false, kind>();
             }
@@ -87,8 +85,9 @@ template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightb
     const LightRanks& ranks = from.ranks();
     return write({0, from.tiles_x(), from.tiles_y(), from.slices(), same_layout<lightbin_range>(from.ranges().data()),
                   from.ids().data(), from.ranges().size(), from.ids().size(), sizeof(Id), counts.lights,
-                  counts.rejected, counts.culled, ranks.order.data(), same_layout<lightbin_bin_range>(ranks.bins.data()),
-                  ranks.order.size(), ranks.bins.size(), counts.first_spot, counts.first_box},
+                  counts.rejected, counts.culled, ranks.order.data(),
+                  same_layout<lightbin_bin_range>(ranks.bins.data()), ranks.order.size(), ranks.bins.size(),
+                  counts.first_spot, counts.first_box},
                  to);
 }
 
@@ -117,15 +116,11 @@ public:
 private:
     template <class Body> struct Context {
         void run(std::size_t i) {
-#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
-            try {
+            const auto result = call_if(succeeded(), [&] {
                 body(i);
-            } catch (...) {
-                failed = true;
-            }
-#else
-            body(i);
-#endif
+                return succeeded();
+            });
+            if (result.error != LIGHTBIN_OK) failed = true;
         }
 
         Body body;
@@ -184,19 +179,22 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                        lightbin_binner** binner) {
     using namespace lightbin::c;
     lightbin_binner_options given = {};
-    struct : lightbin::Options {
-        lightbin::Isa isa = lightbin::compiled_isa;
-    } known;
+    lightbin::Options known;
+    lightbin::Isa isa = lightbin::compiled_isa;
     lightbin_result result = check_pointers({{binner, "binner"}});
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
-        result = first_error(LIGHTBIN_MEMBER(ids), LIGHTBIN_MEMBER(depth_test), LIGHTBIN_MEMBER(slicing),
-                             LIGHTBIN_MEMBER(isa));
+        lightbin::for_each_option(
+            [&](const char* name, const auto& from, auto& to) {
+                result = first_error(result, read_member(from, to, name));
+            },
+            given, known);
+    if (result.error == LIGHTBIN_OK) result = read_member(given.isa, isa, "options.isa");
     if (result.error == LIGHTBIN_OK && known.ids == lightbin::IdWidth::u8)
         result = not_a_value(given.ids, "options.ids");
     if (const char* const define = left_out(known); result.error == LIGHTBIN_OK && define != nullptr)
         result = refused(LIGHTBIN_LEFT_OUT, define);
-    return call_if(result, [&] { return make_handle(binner, AnyHow{known}, known.isa); });
+    return call_if(result, [&] { return make_handle(binner, AnyHow{known}, isa); });
 }
 
 void lightbin_binner_destroy(lightbin_binner* binner) {
@@ -247,7 +245,7 @@ lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view*
                           counts.rejected, counts.culled, counts.first_spot, counts.first_box, 0},
                          masks);
         };
-        if constexpr (AnyHow::may.z_bins)
+        if constexpr (AnyHow::may(&lightbin::Options::slicing, lightbin::Slicing::z_bins))
             if (inputs.slices != nullptr) return bin(inputs.slices->value);
         return bin();
     });

@@ -37,8 +37,7 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
 
 extern "C" {
 
-lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
-                                     lightbin_shader** shader) {
+lightbin_result lightbin_cull_shader(const lightbin_cull_options* options, lightbin_shader** shader) {
     using namespace lightbin::c;
     lightbin::CullPass pass = {};
     lightbin::CullOptions known;
@@ -56,14 +55,14 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
     lightbin_result result = first_error(check_pointers({{view, "view"}}), read_cull_options(options, pass, known),
                                          check_size(plan, "plan"));
     if (result.error == LIGHTBIN_OK)
-        result = first_error(
-            check_input(known.slicing != lightbin::Slicing::none, slices, LIGHTBIN_NULL_ARGUMENT, "slices"),
-            check_input(known.world_space, to_view, LIGHTBIN_NULL_ARGUMENT, "to_view"));
+        result =
+            first_error(check_input(known.slicing != lightbin::Slicing::none, slices, LIGHTBIN_NULL_ARGUMENT, "slices"),
+                        check_input(known.world_space, to_view, LIGHTBIN_NULL_ARGUMENT, "to_view"));
     if (result.error == LIGHTBIN_OK && to_view != nullptr) result = read_member(*to_view, matrix, "to_view");
     return call_if(result, [&] {
-        const auto made = lightbin::plan_cull(view->value, known, {lights, entries},
-                                              slices != nullptr ? &slices->value : nullptr,
-                                              to_view != nullptr ? &matrix : nullptr);
+        const auto made =
+            lightbin::plan_cull(view->value, known, {lights, entries}, slices != nullptr ? &slices->value : nullptr,
+                                to_view != nullptr ? &matrix : nullptr);
         if (!made) return refused(made.error());
         lightbin_cull_plan filled = {};
         filled.scratch_bytes = made->bytes.scratch;
@@ -86,8 +85,8 @@ lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges*
     });
 }
 
-lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
-                                      std::size_t capacity, std::size_t* count) {
+lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs, std::size_t capacity,
+                                      std::size_t* count) {
     using namespace lightbin::c;
     return call_if(check_pointers({{slices, "slices"}, {count, "count"}}), [&] {
         const auto made = lightbin::shader_slabs(slices->value);

@@ -13,24 +13,23 @@ namespace lightbin {
 namespace c {
 
 /// Calls body() with the LightGrid that the caller's struct describes.
-template <class Body>
-lightbin_result with_grid(const lightbin_grid* given, const char* name, const Body& body) {
+template <class Body> lightbin_result with_grid(const lightbin_grid* given, const char* name, const Body& body) {
     lightbin_grid grid;
     lightbin_result result = read(given, grid, name);
-    if (result.error == LIGHTBIN_OK && grid.range_count > 0)
-        result = check_pointers({{grid.ranges, "grid.ranges"}});
-    if (result.error == LIGHTBIN_OK && grid.id_count > 0) result = check_pointers({{grid.ids, "grid.ids"}});
+    if (result.error == LIGHTBIN_OK)
+        result = first_error(check_array(grid.ranges, grid.range_count, "grid.ranges"),
+                             check_array(grid.ids, grid.id_count, "grid.ids"));
+    if (result.error != LIGHTBIN_OK) return result;
     const auto with = [&]<class Id>(const Id* ids) {
         return call_if(succeeded(), [&] {
             const auto size = [](std::uint64_t count) { return static_cast<std::size_t>(count); };
             return body(LightGrid<Id>(
                 grid.tiles_x, grid.tiles_y, {same_layout<ListRange>(grid.ranges), size(grid.range_count)},
-                {ids, size(grid.id_count)},
-                {grid.lights, grid.rejected, grid.culled, grid.first_spot, grid.first_box}, grid.slices,
+                {ids, size(grid.id_count)}, {grid.lights, grid.rejected, grid.culled, grid.first_spot, grid.first_box},
+                grid.slices,
                 {{grid.order, size(grid.order_count)}, {same_layout<BinRange>(grid.bins), size(grid.bin_count)}}));
         });
     };
-    if (result.error != LIGHTBIN_OK) return result;
 #if defined(LIGHTBIN_NO_U16)
     if (grid.id_bytes == 2) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_U16");
 #else
@@ -42,7 +41,7 @@ lightbin_result with_grid(const lightbin_grid* given, const char* name, const Bo
 
 /// Calls body() with two LightGrids, whose ids must have the same width.
 ///
-/// second_width  the name of the second one's member id_bytes, for an error
+/// second_width  the name that the error has if the widths differ
 template <class Body>
 lightbin_result with_grids(const lightbin_grid* first, const char* first_name, const lightbin_grid* second,
                            const char* second_name, const char* second_width, const Body& body) {
@@ -92,51 +91,25 @@ struct lightbin_grid_union {
     lightbin::c::EachWidth<lightbin::GridUnion> value;
 };
 
-namespace lightbin {
-namespace c {
-
-/// Copies a grid to the caller's memory, behind the grid `before` if that is not null.
-template <class Id>
-lightbin_result copy_grid(const LightGrid<Id>& from, const LightGrid<Id>* before, lightbin_range* ranges,
-                          std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity,
-                          lightbin_grid* grid) {
-    if (ranges == nullptr && !from.ranges().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ranges");
-    if (ids == nullptr && !from.ids().empty()) return refused(LIGHTBIN_NULL_ARGUMENT, "ids");
-    const std::span<ListRange> all_ranges = {same_layout<ListRange>(ranges),
-                                             static_cast<std::size_t>(range_capacity)};
-    const std::span<Id> all_ids = {static_cast<Id*>(ids), static_cast<std::size_t>(id_capacity)};
-    const auto copied =
-        before != nullptr ? from.copy_to(all_ranges, all_ids, *before) : from.copy_to(all_ranges, all_ids);
-    return copied ? write_grid(*copied, grid) : refused(copied.error());
-}
-
-}  // namespace c
-}  // namespace lightbin
-
 extern "C" {
 
-lightbin_result lightbin_copy_grid(lightbin_grid* grid, lightbin_range* ranges, std::uint64_t range_capacity,
-                                   void* ids, std::uint64_t id_capacity) {
+lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before, lightbin_range* ranges,
+                                   std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity) {
     using namespace lightbin::c;
-    return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& from) {
-        return copy_grid<Id>(from, nullptr, ranges, range_capacity, ids, id_capacity, grid);
+    const auto copy = [&]<class Id>(const lightbin::LightGrid<Id>& from, const auto&... behind) {
+        const lightbin_result checked = first_error(check_array(ranges, from.ranges().size(), "ranges"),
+                                                    check_array(ids, from.ids().size(), "ids"));
+        if (checked.error != LIGHTBIN_OK) return checked;
+        const auto copied =
+            from.copy_to({same_layout<lightbin::ListRange>(ranges), static_cast<std::size_t>(range_capacity)},
+                         {static_cast<Id*>(ids), static_cast<std::size_t>(id_capacity)}, behind...);
+        return copied ? write_grid(*copied, grid) : refused(copied.error());
+    };
+    if (before == nullptr) return with_grid(grid, "grid", copy);
+    return with_grids(grid, "grid", before, "before", "before.id_bytes", [&](const auto& from, const auto& first) {
+        const bool same = before->ranges == ranges && before->ids == ids;
+        return same ? copy(from, first) : refused(LIGHTBIN_OTHER_MEMORY, "before");
     });
-}
-
-lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* before, lightbin_range* ranges,
-                                     std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity) {
-    using namespace lightbin::c;
-    return with_grids(
-        grid, "grid", before, "before", "before.id_bytes",
-        [&]<class Id>(const auto& from, const lightbin::LightGrid<Id>& first) {
-            const bool same = static_cast<const void*>(first.ranges().data()) == ranges &&
-                              (first.ids().empty() || first.ids().data() == ids);
-            if (!same) return refused(LIGHTBIN_OTHER_MEMORY, "before");
-            const lightbin::LightGrid<Id> in_memory(first.tiles_x(), first.tiles_y(), first.ranges(),
-                                                    {static_cast<const Id*>(ids), first.ids().size()},
-                                                    first.light_counts(), first.slices(), first.ranks());
-            return copy_grid<Id>(from, &in_memory, ranges, range_capacity, ids, id_capacity, grid);
-        });
 }
 
 lightbin_result lightbin_grid_union_create(lightbin_grid_union** grid_union) {
@@ -176,13 +149,11 @@ lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid
                                     lightbin_grid* limited, lightbin_cut* cut) {
     using namespace lightbin::c;
     const lightbin_result checked =
-        first_error(check_pointers({{budget, "budget"}}),
-                    weight_count > 0 ? check_pointers({{weights, "weights"}}) : succeeded(),
+        first_error(check_pointers({{budget, "budget"}}), check_array(weights, weight_count, "weights"),
                     check_size(limited, "limited"), cut != nullptr ? check_size(cut, "cut") : succeeded());
     return call_if(checked, [&] {
         return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& whole) {
-            const auto made =
-                budget->value.of<Id>().limit(whole, {weights, weight_count}, {per_cell, per_frame});
+            const auto made = budget->value.of<Id>().limit(whole, {weights, weight_count}, {per_cell, per_frame});
             if (!made) return refused(made.error());
             if (cut != nullptr) write({0, made->entries_cut, made->cut_in_cell.data(), made->cut_in_cell.size()}, cut);
             return write_grid(made->grid, limited);
@@ -192,12 +163,11 @@ lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid
 
 #endif
 
-lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t* entries,
-                                       std::size_t capacity, std::uint32_t* listed) {
+lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t* entries, std::size_t capacity,
+                                       std::uint32_t* listed) {
     using namespace lightbin::c;
     const lightbin_result checked =
-        first_error(check_pointers({{listed, "listed"}}),
-                    capacity > 0 ? check_pointers({{entries, "entries"}}) : succeeded());
+        first_error(check_pointers({{listed, "listed"}}), check_array(entries, capacity, "entries"));
     return call_if(checked, [&] {
         return with_grid(grid, "grid", [&](const auto& from) {
             const auto count = count_entries(from, std::span<std::uint32_t>(entries, capacity));
@@ -208,8 +178,7 @@ lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t*
     });
 }
 
-lightbin_result lightbin_list_lengths(const lightbin_grid* grid, std::uint32_t* longest,
-                                      std::uint64_t* histogram) {
+lightbin_result lightbin_list_lengths(const lightbin_grid* grid, std::uint32_t* longest, std::uint64_t* histogram) {
     using namespace lightbin::c;
     return call_if(check_pointers({{longest, "longest"}, {histogram, "histogram"}}), [&] {
         return with_grid(grid, "grid", [&](const auto& from) {
@@ -221,8 +190,8 @@ lightbin_result lightbin_list_lengths(const lightbin_grid* grid, std::uint32_t* 
     });
 }
 
-lightbin_result lightbin_encoded_bytes(const lightbin_format* format, std::uint64_t tiles,
-                                       std::uint64_t entries, std::uint64_t* bytes) {
+lightbin_result lightbin_encoded_bytes(const lightbin_format* format, std::uint64_t tiles, std::uint64_t entries,
+                                       std::uint64_t* bytes) {
     using namespace lightbin::c;
     lightbin::ListFormat known;
     const lightbin_result result =
@@ -235,9 +204,10 @@ lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format
                                 std::uint64_t out_bytes, lightbin_encoded* encoded) {
     using namespace lightbin::c;
     lightbin::ListFormat known;
-    return call_if(first_error(check_size(encoded, "encoded"), read_format(format, known, "format")), [&] {
+    const lightbin_result checked = first_error(check_array(out, out_bytes, "out"), check_size(encoded, "encoded"),
+                                                read_format(format, known, "format"));
+    return call_if(checked, [&] {
         return with_grid(grid, "grid", [&](const auto& from) {
-            if (out == nullptr && out_bytes > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "out");
             const auto made = lightbin::encode(
                 from, known, std::span(static_cast<std::byte*>(out), static_cast<std::size_t>(out_bytes)));
             if (!made) return refused(made.error());

@@ -14,18 +14,20 @@
 namespace lightbin {
 namespace c {
 
-/// What boxes that are given without a radius or a taper have in its place: one float for all of them.
+/// The radius and the taper of boxes that are given without: single floats that all boxes of a call share.
 inline constexpr float unbounded = std::numeric_limits<float>::infinity(), untapered = 1;
 
-/// Describes one property of a light, such as its centre: the member of the C struct that says where the caller's floats
-/// are, the number of floats of each light, and the byte of a C++ Sphere, Spot or Box from which on they are stored.
+/// Describes one property of a light, such as its centre: the member of the C struct that says where the caller's
+/// floats are, the number of floats of each light, and the byte of a C++ Sphere, Spot or Box from which on they are
+/// stored.
 template <class Given> struct Member {
     lightbin_floats Given::*floats;
     std::size_t each, offset;
     const char* name;
 };
 
-/// The kinds of lights: what the engine reads in place of the caller's, and the members of both.
+/// Describes a kind of lights, lightbin_spheres, lightbin_spots or lightbin_boxes: the C++ struct that each light is
+/// copied to, and the members on both sides.
 template <class Given> struct Kind;
 template <> struct Kind<lightbin_spheres> {
     using Made = Sphere;
@@ -54,8 +56,8 @@ template <> struct Kind<lightbin_boxes> {
         {&lightbin_boxes::radius, 1, offsetof(Box, radius), "lights.boxes.radius"}};
 };
 
-/// Calls body.operator()<m>(floats) for each member of a kind of lights, where Kind<Given>::members[m] is the member and
-/// `floats` says where the caller has it.
+/// Calls body.operator()<m>(floats) for each member of a kind of lights, where Kind<Given>::members[m] is the member
+/// and `floats` says where the caller has it.
 template <class Given, class Body> LIGHTBIN_INLINE void for_each_member(const Given& from, const Body& body) {
     [&]<std::size_t... m>(std::index_sequence<m...>) {
         (body.template operator()<m>(from.*Kind<Given>::members[m].floats), ...);
@@ -67,34 +69,6 @@ inline std::uintptr_t address_of(const void* pointer) {
     return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// Whether a member is one float that follows the three floats of the member before it, in the engine's lights.
-template <class Given, std::size_t m> inline constexpr bool follows_three = [] {
-    constexpr auto& members = Kind<Given>::members;
-    if constexpr (m == 0 || m >= std::size(members))
-        return false;
-    else
-        return members[m - 1].each == 3 && members[m].each == 1;
-}();
-
-/// Copies the lights first..first + count - 1 from the caller's arrays of floats. All floats of a light are copied before
-/// those of the next light, as they mostly lie side by side in memory.
-///
-/// fours  whether every radius lies directly behind its centre in the caller's memory, as it does in a Sphere, and
-///        every other single number directly behind the vector that precedes it in the C++ struct. Then the vector
-///        and the number are copied together, as four floats
-template <bool fours, class Given>
-void read_lights(const Given& from, std::size_t first, std::size_t count, typename Kind<Given>::Made* to) {
-    const Given arrays = from;  // a local copy, so that compilers need not reload it after each store
-    for (std::size_t i = 0; i < count; ++i)
-        for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& floats) {
-            constexpr const Member<Given>& member = Kind<Given>::members[m];
-            if constexpr (!fours || !follows_three<Given, m>)
-                std::memcpy(reinterpret_cast<char*>(to + i) + member.offset,
-                            static_cast<const char*>(floats.first) + (first + i) * floats.stride,
-                            (fours && follows_three<Given, m + 1> ? 4 : member.each) * sizeof(float));
-        });
-}
-
 }  // namespace c
 
 inline namespace LIGHTBIN_ABI_TAG { namespace detail {
@@ -104,7 +78,7 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     using Made = typename c::Kind<Given>::Made;
     static constexpr LightKind kind = c::Kind<Given>::kind;
 
-    /// What other Lights have in place of this: a span of the caller's array.
+    /// Stands for the caller's array, which other Lights have as a span, where only the number of lights is asked for.
     struct Count {
         std::size_t count;
         std::size_t size() const { return count; }
@@ -113,17 +87,17 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     const Given& from;
     const WorldToView* to_view;
 
-    /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array.
+    /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array. All floats of a light are
+    /// copied before those of the next light, as they mostly lie side by side in memory.
     void make(std::size_t first, std::size_t count, Made* to) const {
-        bool fours = true;
-        c::for_each_member(from, [&]<std::size_t m>(const lightbin_floats& one) {
-            if constexpr (c::follows_three<Given, m>) {
-                const lightbin_floats& three = from.*c::Kind<Given>::members[m - 1].floats;
-                fours = fours && three.stride == one.stride &&
-                        c::address_of(one.first) == c::address_of(three.first) + 3 * sizeof(float);
-            }
-        });
-        fours ? c::read_lights<true>(from, first, count, to) : c::read_lights<false>(from, first, count, to);
+        const Given arrays = from;  // a local copy, so that compilers need not reload it after each store
+        for (std::size_t i = 0; i < count; ++i)
+            c::for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& floats) {
+                constexpr const c::Member<Given>& member = c::Kind<Given>::members[m];
+                std::memcpy(reinterpret_cast<char*>(to + i) + member.offset,
+                            static_cast<const char*>(floats.first) + (first + i) * floats.stride,
+                            member.each * sizeof(float));
+            });
     }
 
     /// Returns the caller's lights if they lie in memory as Spheres, Spots or Boxes do, so that kernels can read them
@@ -157,10 +131,10 @@ template <class Given> lightbin_result check_lights(const Given& lights) {
     return lights.count > 0 ? result : succeeded();
 }
 
-/// Whether spots and boxes are left out.
+/// Whether the library is compiled for spheres alone, by LIGHTBIN_NO_SPOTS and LIGHTBIN_NO_BOXES.
 inline constexpr bool spheres_alone = !detail::kinds_have_spots && !detail::kinds_have_boxes;
 
-/// The lights of a call.
+/// The lights that a caller gave to a function, and the transform to view space if they are in world space.
 struct CallLights {
     lightbin_lights given;
     std::optional<detail::WorldToView> to_view;

@@ -14,7 +14,7 @@ namespace c {
 static_assert(offsetof(lightbin_box, half_axes) == offsetof(Box, half_axes) &&
               offsetof(lightbin_box, taper) == offsetof(Box, taper));
 
-/// Returns the light of one side that has the numbers of the other side's.
+/// Copies a light from a C++ struct to the C struct with the same members, or back.
 template <class To, class From> To same_numbers(const From& from) {
     static_assert(sizeof(To) == sizeof(From));
     To to = {};
@@ -52,13 +52,12 @@ lightbin_result lightbin_tube_sphere(const float* a, const float* b, float radiu
                          [&] { return tube_sphere(c::triple_at(a), c::triple_at(b), radius); });
 }
 
-lightbin_result lightbin_rectangle_sphere(const float* centre, const float* half_x, const float* half_y,
-                                          float range, lightbin_sphere* sphere) {
+lightbin_result lightbin_rectangle_sphere(const float* centre, const float* half_x, const float* half_y, float range,
+                                          lightbin_sphere* sphere) {
     using namespace lightbin;
-    return c::make_light(
-        {{centre, "centre"}, {half_x, "half_x"}, {half_y, "half_y"}, {sphere, "sphere"}}, sphere, [&] {
-            return rectangle_sphere(c::triple_at(centre), c::triple_at(half_x), c::triple_at(half_y), range);
-        });
+    return c::make_light({{centre, "centre"}, {half_x, "half_x"}, {half_y, "half_y"}, {sphere, "sphere"}}, sphere, [&] {
+        return rectangle_sphere(c::triple_at(centre), c::triple_at(half_x), c::triple_at(half_y), range);
+    });
 }
 
 #if !defined(LIGHTBIN_NO_BOXES)
@@ -85,22 +84,20 @@ lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_
     return c::make_light({{box, "box"}}, box, [&] { return oriented_box(matrix, half_side); });
 }
 
-lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float* direction,
-                                     lightbin_box* box) {
+lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float* direction, lightbin_box* box) {
     using namespace lightbin;
-    return c::make_light({{sphere, "sphere"}, {direction, "direction"}, {box, "box"}}, box, [&] {
-        return half_sphere(c::same_numbers<Sphere>(*sphere), c::triple_at(direction));
-    });
+    return c::make_light({{sphere, "sphere"}, {direction, "direction"}, {box, "box"}}, box,
+                         [&] { return half_sphere(c::same_numbers<Sphere>(*sphere), c::triple_at(direction)); });
 }
 
-lightbin_result lightbin_projector_box(const float* eye, const float* forward, const float* half_x,
-                                       const float* half_y, double begin, lightbin_box* box) {
+lightbin_result lightbin_projector_box(const float* eye, const float* forward, const float* half_x, const float* half_y,
+                                       double begin, lightbin_box* box) {
     using namespace lightbin;
-    return c::make_light(
-        {{eye, "eye"}, {forward, "forward"}, {half_x, "half_x"}, {half_y, "half_y"}, {box, "box"}}, box, [&] {
-            return projector_box(c::triple_at(eye), c::triple_at(forward), c::triple_at(half_x),
-                                 c::triple_at(half_y), begin);
-        });
+    return c::make_light({{eye, "eye"}, {forward, "forward"}, {half_x, "half_x"}, {half_y, "half_y"}, {box, "box"}},
+                         box, [&] {
+                             return projector_box(c::triple_at(eye), c::triple_at(forward), c::triple_at(half_x),
+                                                  c::triple_at(half_y), begin);
+                         });
 }
 
 lightbin_result lightbin_tube_box(const float* a, const float* b, float radius, lightbin_box* box) {

@@ -37,7 +37,8 @@ inline lightbin_result read_view(const lightbin_view_options* options, std::opti
     return result;
 }
 
-/// Returns why Z bounds in arrays of `tiles` floats are refused, of which those that are null are not there.
+/// Returns why arrays with a view depth for each tile are refused, which have `tiles` elements, or are null if they are
+/// not wanted.
 inline lightbin_result check_bounds(std::initializer_list<const float*> bounds, std::size_t tiles, const View& view,
                                     const char* name) {
     for (const float* const bound : bounds)
@@ -159,8 +160,8 @@ lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, do
     });
 }
 
-double lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
-    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<double>::quiet_NaN();
+float lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
+    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<float>::quiet_NaN();
 }
 
 #if !defined(LIGHTBIN_WITHOUT_SLICES)
@@ -180,7 +181,7 @@ lightbin_result lightbin_slices_linear(std::int32_t count, float begin, float en
 lightbin_result lightbin_slices_from_boundaries(const float* boundaries, std::size_t count, float margin,
                                                 lightbin_slices** slices) {
     using namespace lightbin::c;
-    return make_slices(margin, count > 0 ? check_pointers({{boundaries, "boundaries"}}) : succeeded(), slices,
+    return make_slices(margin, check_array(boundaries, count, "boundaries"), slices,
                        [=] { return lightbin::Slices::from_boundaries({boundaries, count}); });
 }
 
@@ -203,27 +204,22 @@ std::int32_t lightbin_slices_at(const lightbin_slices* slices, float depth) {
 
 #if !defined(LIGHTBIN_NO_DEPTH_TEST)
 lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
-                                      const lightbin_z_bounds_buffers* out, lightbin_z_bounds* bounds) {
+                                      float* min, float* max, std::size_t tiles) {
     using namespace lightbin::c;
-    lightbin_depth_buffer given;
-    lightbin_z_bounds_buffers to;
+    lightbin_depth_buffer given = {};
     lightbin::DepthBuffer known;
     lightbin::Isa isa = lightbin::compiled_isa;
-    lightbin_result result = first_error(check_pointers({{view, "view"}}), read(buffer, given, "buffer"),
-                                         read(out, to, "out"), check_size(bounds, "bounds"));
+    lightbin_result result = first_error(check_pointers({{view, "view"}}), read(buffer, given, "buffer"));
     if (result.error == LIGHTBIN_OK)
         result = first_error(read_member(given.format, known.format, "buffer.format"), LIGHTBIN_MEMBER(samples),
                              LIGHTBIN_MEMBER(row_pitch), LIGHTBIN_MEMBER(skip_background),
-                             read_member(to.isa, isa, "out.isa"),
-                             given.count > 0 ? check_pointers({{given.depth, "buffer.depth"}}) : succeeded(),
-                             check_bounds({to.min, to.max}, to.tiles, view->value, "out"));
-    known.depth = {given.depth, given.count};
+                             read_member(given.isa, isa, "buffer.isa"),
+                             check_array(given.depth, given.count, "buffer.depth"),
+                             check_bounds({min, max}, tiles, view->value, "tiles"));
     return call_if(result, [&] {
-        const auto reduced =
-            lightbin::reduce_depth(view->value, known, {span_of(to.min, to.tiles), span_of(to.max, to.tiles)}, isa);
-        if (!reduced) return refused(reduced.error());
-        const auto first = [](std::span<const float> bound) { return bound.empty() ? nullptr : bound.data(); };
-        return write({0, 0, first(reduced->min), first(reduced->max), to.tiles}, bounds);
+        known.depth = {given.depth, given.count};
+        const auto made = lightbin::reduce_depth(view->value, known, {span_of(min, tiles), span_of(max, tiles)}, isa);
+        return made ? succeeded() : refused(made.error());
     });
 }
 #endif

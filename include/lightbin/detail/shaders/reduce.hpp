@@ -11,7 +11,7 @@ inline Result<ShaderText> reduce_shader(const ReduceOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
     const Dialect& dialect = writer.dialect;
-    const bool compute = options.stage == ShaderStage::compute, many = options.samples > 1;
+    const bool compute = !options.fragment, many = options.samples > 1;
     if (const auto error = refuse_common(
             options, {options.depth, options.z_bounds, options.grid},
             {{compute && !dialect.storage_buffers, {ErrorCode::no_storage_buffers}},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/stages/shares.hpp>
+#include <lightbin/options.hpp>
 #include <lightbin/z_bounds.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -30,13 +31,13 @@ public:
         if (const auto error = prepare(how, view, bounds, common)) return error;
         const bool clusters = how.is.slicing == Slicing::clusters;
         std::size_t slices = 1;
-        if constexpr (How::may.clusters)
+        if constexpr (How::may(&Options::slicing, Slicing::clusters))
             if (clusters) slices = sliced.slices();
         const auto job_of = [&]([[maybe_unused]] std::size_t slice) {
             BinJob job = common;
             FootprintSlice& footprints = job;
             footprints = all;
-            if constexpr (How::may.clusters)
+            if constexpr (How::may(&Options::slicing, Slicing::clusters))
                 if (clusters) footprints = sliced.slice(slice);
             return job;
         };
@@ -50,7 +51,7 @@ public:
         }
         std::uint64_t capacity = area;
         // Tests leave fewer entries than rectangles have tiles: if 32 bits can't count the tiles, count the entries.
-        if constexpr (How::may.depth_test)
+        if constexpr (How::may(&Options::depth_test))
             if (how.is.depth_test && area > max_entries) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < slices; ++slice)
@@ -114,7 +115,7 @@ private:
             if (sides[side].size() < tiles) return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
             common.bounds[side] = sides[side].data();
         }
-        if constexpr (How::may.depth_test)
+        if constexpr (How::may(&Options::depth_test))
             if (how.is.depth_test) find_edges(common);
         return {};
     }

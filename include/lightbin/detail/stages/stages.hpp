@@ -12,22 +12,16 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Which options the program has code for.
-struct OptionCode {
-    bool u16, u32, depth_test, clusters, z_bins;
-};
-
 /// How a Binner works, as constants. In its place lightbin.h has a struct whose `is` is set at run time.
 template <Options options> struct FixedHow {
     static constexpr Options is = options;
-    static constexpr OptionCode may = {.u16 = is.ids == IdWidth::u16,
-                                       .u32 = is.ids == IdWidth::u32,
-                                       .depth_test = is.depth_test,
-                                       .clusters = is.slicing == Slicing::clusters,
-                                       .z_bins = is.slicing == Slicing::z_bins};
 
+    /// Whether the program has code for a value of an option, such as may(&Options::slicing, Slicing::clusters).
+    template <class Value> static constexpr bool may(Value Options::*option, Value value = Value(true)) {
+        return is.*option == value;
+    }
     template <class Id, LightKind kind> static constexpr ListKernels<Id> kernels() {
-        return list_kernels<Id, is.depth_test, may.clusters, kind>();
+        return list_kernels<Id, is.depth_test, is.slicing == Slicing::clusters, kind>();
     }
     /// Calls body.operator()<kind>() with the kind of a call's lights.
     template <class Source, class Body> static auto with_kind(const Source&, const Body& body) {
@@ -37,8 +31,8 @@ template <Options options> struct FixedHow {
 
 /// The stages, and the memory that they keep from call to call.
 ///
-/// How  a FixedHow, or a struct with the same members, of which `is` may be set at run time. `may` is constant: no code is
-///      compiled for what it denies
+/// How  a FixedHow, or a struct with the same members, of which `is` may be set at run time. may() is constant: no code
+///      is compiled for what it denies
 template <class How> class Stages {
     struct Nothing {};
     template <bool is_held, class T> using Held = std::conditional_t<is_held, T, Nothing>;
@@ -60,7 +54,7 @@ public:
         Lists<Id>& lists = lists_of<Id>();
         FootprintSlice all = footprints_.all();
         LightRanks ranks;
-        if constexpr (How::may.z_bins)
+        if constexpr (How::may(&Options::slicing, Slicing::z_bins))
             if (how.is.slicing == Slicing::z_bins) {
                 all = ranked_.all();
                 ranks = ranked_.ranks();
@@ -84,11 +78,11 @@ private:
                             how.is.depth_test ? Kept::lights_and_planes
                             : sliced          ? Kept::lights
                                               : Kept::nothing);
-        if constexpr (How::may.clusters || How::may.z_bins) {
+        if constexpr (How::may(&Options::slicing, Slicing::clusters) || How::may(&Options::slicing, Slicing::z_bins)) {
             const DepthBucketsKernel kernel = depth_buckets_kernel<Source::kind>(isa);
-            if constexpr (How::may.clusters)
+            if constexpr (How::may(&Options::slicing, Slicing::clusters))
                 if (how.is.slicing == Slicing::clusters) return sliced_.order(kernel, view, footprints_, *slices);
-            if constexpr (How::may.z_bins)
+            if constexpr (How::may(&Options::slicing, Slicing::z_bins))
                 if (how.is.slicing == Slicing::z_bins) ranked_.order(kernel, view, footprints_, *slices);
         }
         return {};
@@ -103,10 +97,10 @@ private:
 
     Buffer<Scratch> scratch_;  ///< working memory, one Scratch per worker
     Footprints footprints_;
-    Held<How::may.clusters, SlicedFootprints> sliced_;
-    Held<How::may.z_bins, RankedFootprints> ranked_;
-    Held<How::may.u16, Lists<std::uint16_t>> narrow_;
-    Held<How::may.u32, Lists<std::uint32_t>> wide_;
+    Held<How::may(&Options::slicing, Slicing::clusters), SlicedFootprints> sliced_;
+    Held<How::may(&Options::slicing, Slicing::z_bins), RankedFootprints> ranked_;
+    Held<How::may(&Options::ids, IdWidth::u16), Lists<std::uint16_t>> narrow_;
+    Held<How::may(&Options::ids, IdWidth::u32), Lists<std::uint32_t>> wide_;
 };
 
 }}}  // namespace lightbin::detail
