@@ -163,26 +163,24 @@ LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob& job, Scratch& scr
 }
 
 /// bin_blocks_by() with the list_lights() of the given options.
-template <bool depth_test, class Id, bool by_slab, LightKind kind>
+template <class Id, Tested tested, LightKind kind>
 std::uint64_t bin_blocks(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     SlabBoxes slab;
-    if constexpr (by_slab)
+    if constexpr (tested == Tested::slab)
         if (job.visible != 0) slab = arrange_slab(job, scratch);
-    return bin_blocks_by(job, scratch, share, slab, list_lights<depth_test, by_slab, kind>);
+    return bin_blocks_by(job, scratch, share, slab, list_lights<tested, kind>);
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-///
-/// by_slab  as for bin_kernel()
-template <bool by_slab, LightKind kind>
+template <Tested tested, LightKind kind>
 std::uint64_t count_entries(const BinJob& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
     SlabBoxes slab;
-    if constexpr (by_slab) slab = arrange_slab(job, scratch);
+    if constexpr (tested == Tested::slab) slab = arrange_slab(job, scratch);
     BandLists bands;
     std::uint64_t entries = 0;
     for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<true, by_slab, kind>(job, scratch, slab, bands, top, end);
+        const BlockList* list = list_lights<tested, kind>(job, scratch, slab, bands, top, end);
         for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
             for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
                 entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));

@@ -56,15 +56,11 @@ inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
 
 /// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all. Kernels without a depth test
 /// read footprints only, so all kinds of lights share those of spheres.
-///
-/// by_slab  whether lights are tested against the boxes around a depth slice's cells, see SlabCells
-template <bool depth_test, class Id, bool by_slab, LightKind kind>
+template <class Id, Tested tested, LightKind kind>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
-    if constexpr (!depth_test)
+    if constexpr (tested == Tested::nothing)
         if (scatter_is_faster(isa, view.tile_count(), area)) return scatter_lights<Id>;
-    return with_tier(isa, [](auto tier) {
-        return tier.template bin_kernel<depth_test, Id, by_slab, kind>();
-    });
+    return with_tier(isa, [](auto tier) { return tier.template bin_kernel<Id, tested, kind>(); });
 }
 
 /// The binning kernels for a set of options and a kind of lights.
@@ -78,11 +74,11 @@ template <class Id> struct ListKernels {
 /// Returns the kernels for lights of the kind `kind`. With clusters and a depth test, spheres and spots are tested
 /// against boxes of equal depths, see SlabCells: a build takes 1.2 to 2 times as long with boxes that differ in depth.
 template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr ListKernels<Id> list_kernels() {
-    constexpr bool by_slab = clusters && depth_test && kind != LightKind::box;
+    constexpr Tested tested = clusters && kind != LightKind::box ? Tested::slab : Tested::cells;
     if constexpr (depth_test)
-        return {bin_kernel<true, Id, by_slab, kind>, least::count_entries<by_slab, kind>};
+        return {bin_kernel<Id, tested, kind>, least::count_entries<tested, kind>};
     else
-        return {bin_kernel<false, Id, false, LightKind::sphere>, nullptr};
+        return {bin_kernel<Id, Tested::nothing, LightKind::sphere>, nullptr};
 }
 
 }}}  // namespace lightbin::detail

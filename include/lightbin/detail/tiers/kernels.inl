@@ -48,6 +48,10 @@
 
 #include <lightbin/detail/engine/cells.inl>
 
+#include <lightbin/detail/engine/cell_tests.inl>
+
+#include <lightbin/detail/engine/slab_tests.inl>
+
 #include <lightbin/detail/engine/depth_tests.inl>
 
 #include <lightbin/detail/engine/emit.inl>
@@ -62,11 +66,11 @@ struct Tier {
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     static DepthKernel depth_kernel() { return column_extremes; }
 
-    template <bool depth_test, class Id, bool by_slab, LightKind kind> static BinKernel<Id> bin_kernel() {
-        if constexpr (!depth_test && lanes <= (widest_that_scatters == Isa::scalar ? 1 : 4))
+    template <class Id, Tested tested, LightKind kind> static BinKernel<Id> bin_kernel() {
+        if constexpr (tested == Tested::nothing && lanes <= (widest_that_scatters == Isa::scalar ? 1 : 4))
             return scatter_lights<Id>;
         else
-            return bin_blocks<depth_test, Id, by_slab, kind>;
+            return bin_blocks<Id, tested, kind>;
     }
 };
 
