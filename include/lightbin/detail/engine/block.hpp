@@ -58,7 +58,8 @@ struct Scratch {
     }
     /// Returns row_columns_of(list) for a list behind all others, with memory for its table.
     std::uint8_t* reserve_row_columns(const BlockList& list) {
-        row_columns.reserve(std::uint64_t{8} * (list.begin + list.padded_count()) + 64, std::size_t{8} * list.begin);
+        row_columns.reserve(std::uint64_t{8} * (list.begin + list.padded_count()) + widest_vector,
+                            std::size_t{8} * list.begin);
         return row_columns_of(list);
     }
     /// The bytes that store_met_boxes() keeps in tile_masks.

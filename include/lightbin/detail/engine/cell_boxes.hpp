@@ -43,9 +43,6 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
 
 /// The boxes around all cells of a depth slice. They share their depths z0 to z1 and differ only by column and by row.
 struct SlabBoxes {
-    /// How many elements past the last one vectors read and write.
-    static constexpr std::size_t padding = 16;
-
     const float* ends[4] = {};  ///< four arrays: cell boxes' low and high x by tile column, low and high y by tile row
     float z0 = 0, z1 = 0;
 };

@@ -58,9 +58,8 @@ LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, cons
                                   const TestedShape<Shape>& light) {
     const Shape& shape = *light.shape;
     auto missed = less(Floats{}, Floats{});  // none
-    if (!std::is_same_v<Shape, ViewBox> || shape.ball.radius < infinity)
-        missed = less(broadcast(reach2_of(shape.ball.radius)),
-                      distance2(cells, shape.ball.x, shape.ball.y, shape.ball.z));
+    if (!std::is_same_v<Shape, ViewBox> || shape.radius < infinity)
+        missed = less(broadcast(reach2_of(shape.radius)), distance2(cells, shape.x, shape.y, shape.z));
     return or_outside<orthographic>(missed, cells, x_edges, y_edges, shape.around);
 }
 

@@ -124,7 +124,7 @@ inline SlabBoxes arrange_slab(const BinJob& job, Scratch& scratch) {
     const Floats front = broadcast(camera.orthographic ? 1.0f : slab.z0),
                  back = broadcast(camera.orthographic ? 1.0f : slab.z1);
     const std::size_t tiles[] = {static_cast<std::size_t>(camera.x.tiles), static_cast<std::size_t>(camera.y.tiles)};
-    float* ends = scratch.slab_ends.reserve(2 * (tiles[0] + std::uint64_t{tiles[1]} + 2 * SlabBoxes::padding));
+    float* ends = scratch.slab_ends.reserve(2 * (tiles[0] + std::uint64_t{tiles[1]} + 2 * widest_lanes));
     for (unsigned side = 0; side < 4; ++side) {
         const std::size_t count = tiles[side / 2];
         for (std::size_t i = 0; i < count; i += lanes) {
@@ -132,7 +132,7 @@ inline SlabBoxes arrange_slab(const BinJob& job, Scratch& scratch) {
             store_floats(ends + i, side % 2 == 0 ? low_ends(edges, front, back) : high_ends(edges, front, back));
         }
         slab.ends[side] = ends;
-        ends += count + SlabBoxes::padding;
+        ends += count + widest_lanes;
     }
     return slab;
 }

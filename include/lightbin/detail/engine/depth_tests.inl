@@ -76,7 +76,7 @@ void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab
             if (spot.tolerance > 0)
                 spots.add(j, cells.depths, spot);
             else
-                add_sphere(j, spot.ball);
+                add_sphere(j, Sphere{spot.x, spot.y, spot.z, spot.radius});
         } else {
             boxes.add(j, cells.depths, lights.template shape<LightKind::box>(id));
         }
@@ -99,7 +99,7 @@ void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint64_t* const masks = scratch.tile_masks.data();
-    std::memset(masks + list.count, 0, 16 * sizeof *masks);
+    std::memset(masks + list.count, 0, widest_lanes * sizeof *masks);
     std::uint8_t* const row_columns = scratch.reserve_row_columns(list);
     for (std::uint32_t i = 0; i < padded; i += 8) {
         std::uint64_t rows[8];
@@ -119,7 +119,7 @@ void mask_lights(const BinJob& job, Scratch& scratch, const Slab& slab, unsigned
     const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                        *const rows = scratch.list_rows.data() + list.begin;
     std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
-    std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{64});
+    std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{widest_vector});
     std::uint32_t kept = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);

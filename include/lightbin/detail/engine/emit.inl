@@ -26,7 +26,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
         return any != 0 ? all : RowLights{};
     }
     if (all.count <= 64) return all;
-    const std::uint64_t capacity = all.count + std::uint64_t{128};
+    const std::uint64_t capacity = all.count + std::uint64_t{2 * widest_vector};
     std::uint32_t* const ids = scratch.row_ids.reserve(capacity);
     std::uint8_t* const columns = scratch.picked_columns.reserve(capacity);
     std::uint32_t picked = 0;
@@ -37,7 +37,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
         compress_store(chosen, all.ids + i, ids + picked);
         picked += static_cast<std::uint32_t>(std::popcount(chosen));
     }
-    std::memset(columns + picked, 0, 16);
+    std::memset(columns + picked, 0, widest_lanes);
     return {ids, columns, picked};
 }
 
@@ -117,7 +117,7 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
             end = emit_short(out, tiles + x, columns, offset, lights.ids, lights.columns);
         } else {
             std::uint64_t few[8], *words = few;
-            if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
+            if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{8});
             for (std::uint32_t i = 0; i < lights.count; i += 64)
                 split_bits(lights.columns + i, words + i / 8);
             end = emit_tiles(out, tiles + x, columns, offset, lights, words);
@@ -129,7 +129,7 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
 }
 
 /// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
-/// writes the tiles' lists. Returns the number of list entries. May write up to BinShare::slack elements past them.
+/// writes the tiles' lists. Returns the number of list entries. May write up to `widest_vector` elements past them.
 ///
 /// slab       the boxes around a depth slice's cells, if list_band reads them
 /// list_band  list_lights() for the options

@@ -59,7 +59,7 @@ public:
         if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
 
         common.tiles = tiles_.reserve(std::uint64_t{tiles} * slices);
-        Id* const list = indices_.reserve(capacity + BinShare<Id>::slack);
+        Id* const list = indices_.reserve(capacity + widest_vector);
         tile_count_ = tiles * slices;
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, Scratch& memory) {
             std::uint32_t offset = 0;
@@ -124,12 +124,12 @@ private:
     void find_edges(BinJob& common) {
         const ImageAxis* axes[] = {&common.camera->x, &common.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {
-            const std::size_t count = static_cast<std::size_t>(axes[i]->tiles), capacity = count + SlabBoxes::padding;
+            const std::size_t count = static_cast<std::size_t>(axes[i]->tiles), capacity = count + widest_vector;
             float *low = edges_[2 * i].reserve(capacity), *high = edges_[2 * i + 1].reserve(capacity);
             for (int tile = 0; tile < axes[i]->tiles; ++tile)
                 tile_edges(*axes[i], tile, low[tile], high[tile]);
-            fill_items(low + count, SlabBoxes::padding, 0.0f);
-            fill_items(high + count, SlabBoxes::padding, 0.0f);
+            fill_items(low + count, widest_lanes, 0.0f);
+            fill_items(high + count, widest_lanes, 0.0f);
             common.edges[2 * i] = low;
             common.edges[2 * i + 1] = high;
         }

@@ -85,7 +85,7 @@ void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned en
     to.begin = begin;
     to.end = min_of(begin + 8 * static_cast<unsigned>(together), end);
     to.count = (to.end - to.begin + 7) / 8 * to.panels;
-    to.capacity = job.visible + std::size_t{64};  // whole vectors are stored
+    to.capacity = job.visible + widest_vector;
     const std::uint64_t entries = std::uint64_t{to.capacity} * to.count;
     to.x0 = scratch.band_x0.reserve(entries);
     to.x1 = scratch.band_x1.reserve(entries);
@@ -96,7 +96,7 @@ void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned en
     const std::uint32_t* ids = job.lights.ids;
     if constexpr (by_index) {
         const std::uint32_t last = job.runs.empty() ? 0 : job.runs.back().end;
-        std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{64});
+        std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{widest_vector});
         for (const FootprintRun& run : job.runs)
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 indices[i] = i;
@@ -121,7 +121,7 @@ inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::s
                                 std::uint32_t begin) {
     const std::size_t list = band * bands.panels + x / panel_blocks, size = bands.sizes[list];
     if (size == 0) return 0;
-    const std::uint64_t capacity = begin + std::uint64_t{size} + 128;
+    const std::uint64_t capacity = begin + std::uint64_t{size} + 2 * widest_vector;
     std::uint8_t* const columns = scratch.list_columns.reserve(capacity, begin) + begin;
     std::uint8_t* const rows = scratch.list_rows.reserve(capacity, begin) + begin;
     std::uint32_t* const ids = scratch.list_ids.reserve(capacity, begin) + begin;
@@ -151,7 +151,7 @@ template <class Narrow> void store_rectangles(Scratch& scratch, const BlockList&
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
     std::uint8_t* to = scratch.reserve_row_columns(list);
-    std::memset(columns + list.count, 0, 16);
+    std::memset(columns + list.count, 0, widest_lanes);
     for (unsigned row = 0; row < 8; ++row, to += padded)
         for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
             const Bytes in_row = load_bytes(rows + i) & broadcast_byte(1u << row);

@@ -78,7 +78,7 @@ std::uint64_t build_shares(const Parallel& parallel, std::span<Share> shares, Li
                            Buffer<Buffer<Id>>& memory, Id* list, Build build) {
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
-        Id* const out = i == 0 ? list : memory.data()[i].reserve(shares[i].entries + BinShare<Id>::slack);
+        Id* const out = i == 0 ? list : memory.data()[i].reserve(shares[i].entries + widest_vector);
         shares[i].entries = build(shares[i], i, out);
     });
     parallel.run(shares.size() - 1, [&](std::size_t previous) {

@@ -60,7 +60,7 @@ inline void store_met_boxes(const BinJob& job, Scratch& scratch, const SlabCells
     const SlabCells boxes = slab;  // a local copy, so that compilers need not reload it after each store
     const std::uint32_t padded = list.padded_count();
     const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
-    scratch.tile_masks.reserve(padded + std::uint64_t{64});
+    scratch.tile_masks.reserve(padded + std::uint64_t{widest_vector});
     std::uint8_t* const met = scratch.met_boxes();
     for (std::uint32_t i = 0; i < list.count; ++i)
         boxes.meet(TestedLight(*job.camera, load_sphere(job.lights.view_lights.spheres + ids[i])),

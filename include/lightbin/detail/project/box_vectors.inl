@@ -18,36 +18,11 @@ template <class Reals> struct BoxLanes {
     Reals error;
 };
 
-/// Loads the ViewBoxes box_of(lane): the boxes, whose BoxLanes::error is the ViewBox's tolerance, the centres and radii
-/// of their balls, and their least view depths.
-template <class BoxOf>
-LIGHTBIN_INLINE void load_boxes(const BoxOf& box_of, BoxLanes<Floats>& box, Floats (&ball)[4], Floats& nearest) {
-    Sphere vec4s[5][lanes];  // a ViewBox up to its half axes
-    static_assert(offsetof(ViewBox, around) == 5 * sizeof(Sphere));
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-        const ViewBox& one = box_of(lane);
-        for (std::size_t part = 0; part < 5; ++part)
-            std::memcpy(vec4s[part] + lane, reinterpret_cast<const char*>(&one) + part * sizeof(Sphere),
-                        sizeof(Sphere));
-    }
-    Floats farthest, (&h)[3][3] = box.half_axes;
-    load_spheres(vec4s[0], ball[0], ball[1], ball[2], ball[3]);
-    load_spheres(vec4s[1], nearest, farthest, box.taper, box.error);
-    load_spheres(vec4s[2], box.centre[0], box.centre[1], box.centre[2], h[0][0]);
-    load_spheres(vec4s[3], h[0][1], h[0][2], h[1][0], h[1][1]);
-    load_spheres(vec4s[4], h[1][2], h[2][0], h[2][1], h[2][2]);
-}
-
 /// Returns the greatest n.p of all points p of boxes, relative to the boxes' centres.
 inline Floats reach_from_centre(const BoxLanes<Floats>& box, const Floats (&n)[3]) {
     const Floats along = dot(n, box.half_axes[2]),
                  across = abs(dot(n, box.half_axes[0])) + abs(dot(n, box.half_axes[1]));
     return maximum(across + along, mul(across, box.taper) - along);
-}
-
-/// Returns the greatest n.p of all points p of boxes.
-inline Floats reach_of(const BoxLanes<Floats>& box, const Floats (&n)[3]) {
-    return dot(n, box.centre) + reach_from_centre(box, n);
 }
 
 /// Returns the sum of the absolute values of the half axes' coordinates.

@@ -59,7 +59,7 @@ public:
         detail::for_each_array(source, [&](const auto& lights) { run_count_ += parts_of(lights); });
         runs_.reserve(run_count_);
         part_counts_.reserve(run_count_);
-        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding);
+        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::widest_vector);
         std::size_t first_id = 0, first_part = 0;
         detail::for_each_array(source, [&](const auto& lights) {
             project_array(isa, view, lights, parallel, kept, first_id, first_part, parts_of(lights));
@@ -131,7 +131,7 @@ private:
         };
         threads.run(parts, [&](std::size_t i) {
             const std::size_t first = first_of(i), end = first_of(i + 1), part = first_part + i;
-            const std::size_t to = first_id + first + part * detail::FootprintArrays::padding;
+            const std::size_t to = first_id + first + part * detail::widest_vector;
             detail::ProjectCounts sum;
             kernel(detail::camera_of(view), source, static_cast<std::uint32_t>(first),
                    static_cast<std::uint32_t>(end - first), arrays_.from(to), sum);

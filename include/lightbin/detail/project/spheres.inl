@@ -61,14 +61,12 @@ LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& 
 }
 
 /// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights
-/// whose bit in `fallback` is set are listed for the double-precision path instead. `valid` has a bit for each lane
+/// whose bit in `fallback` is set are left to the double-precision path. `valid` has a bit for each lane
 /// that holds a light of the chunk.
 template <class Mask>
 LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe,
                                 unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
-    for (; fallback != 0; fallback &= fallback - 1)
-        chunk.fallback[chunk.fallback_count++] =
-            i + static_cast<std::uint32_t>(std::countr_zero(fallback));
+    chunk.in_double |= std::uint64_t{fallback} << i;
     chunk.visible |= std::uint64_t{movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid}
                      << i;
 }
@@ -148,7 +146,7 @@ inline void project_lights<LightKind::sphere>(const Camera& camera, const LightS
         Sphere* const own = source.out_spheres != nullptr ? source.out_spheres + first : buffer;
         const Sphere* const given = source.array != nullptr ? static_cast<const Sphere*>(source.array) + first : own;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own);
-        chunk.visible = chunk.fallback_count = 0;
+        chunk.visible = chunk.in_double = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const std::uint32_t used = min_of(lanes, here - i);
             Floats x, y, z, r;
@@ -176,7 +174,12 @@ inline void project_lights<LightKind::sphere>(const Camera& camera, const LightS
                 store_spheres(own + i, centre[0], centre[1], centre[2], r);
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_in_double(camera, transformed ? own : given, chunk, counts);
+        const Sphere* const spheres = transformed ? own : given;
+        for (std::uint64_t rest = chunk.in_double; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = static_cast<std::uint32_t>(std::countr_zero(rest));
+            const bool visible = project_in_double(camera, load_sphere(spheres + i), i, chunk.rects, counts);
+            chunk.visible |= std::uint64_t{visible} << i;
+        }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }

@@ -79,28 +79,20 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double the spots of a chunk in chunk.fallback, which float can't project. A spot's tile rectangle is the
-/// intersection of those of `balls`, the sphere that its cone cuts, and `least`, its least_sphere().
-inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
-                                    ProjectedChunk& chunk, ProjectCounts& counts) {
-    project_in_double(camera, balls, chunk, counts);
-    ProjectedChunk second;
+/// Projects in double a spot that float can't project, as project_in_double() does a sphere. The spot's tile rectangle is
+/// the intersection of those of `ball`, the sphere that its cone cuts, and `least`, its least_sphere().
+inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, const Sphere& least, std::uint32_t i,
+                                   ChunkRects& rects, ProjectCounts& counts) {
+    ChunkRects second;
     ProjectCounts counted_before;  // the second projection counts the same bad input again
-    second.visible = 0;
-    second.fallback_count = chunk.fallback_count;
-    copy_items(chunk.fallback, chunk.fallback_count, second.fallback);
-    project_in_double(camera, least, second, counted_before);
-    for (std::uint32_t listed = 0; listed < chunk.fallback_count; ++listed) {
-        const std::uint32_t i = chunk.fallback[listed];
-        ChunkRects& rects = chunk.rects;
-        rects.x0[i] = max_of(rects.x0[i], second.rects.x0[i]);
-        rects.y0[i] = max_of(rects.y0[i], second.rects.y0[i]);
-        rects.x1[i] = min_of(rects.x1[i], second.rects.x1[i]);
-        rects.y1[i] = min_of(rects.y1[i], second.rects.y1[i]);
-        const bool visible = (second.visible >> i & 1) != 0 && rects.x0[i] <= rects.x1[i] &&
-                             rects.y0[i] <= rects.y1[i];
-        if (!visible) chunk.visible &= ~(std::uint64_t{1} << i);
-    }
+    if (!project_in_double(camera, ball, i, rects, counts) ||
+        !project_in_double(camera, least, i, second, counted_before))
+        return false;
+    rects.x0[i] = max_of(rects.x0[i], second.x0[i]);
+    rects.y0[i] = max_of(rects.y0[i], second.y0[i]);
+    rects.x1[i] = min_of(rects.x1[i], second.x1[i]);
+    rects.y1[i] = min_of(rects.y1[i], second.y1[i]);
+    return rects.x0[i] <= rects.x1[i] && rects.y0[i] <= rects.y1[i];
 }
 
 /// Finds the bounds along the image axes, in perspective, of spots whose balls lie beyond the near plane.
@@ -144,7 +136,7 @@ inline void project_lights<LightKind::spot>(const Camera& camera, const LightSou
         here = min_of(count, ChunkRects::size);
         const Spot* const given = source.array != nullptr ? static_cast<const Spot*>(source.array) + first : buffer;
         if (source.copy != nullptr) source.copy(source.lights, first, here, buffer);
-        chunk.visible = chunk.fallback_count = 0;
+        chunk.visible = chunk.in_double = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const std::uint32_t used = min_of(lanes, here - i);
             SpotLanes spots;
@@ -179,7 +171,11 @@ inline void project_lights<LightKind::spot>(const Camera& camera, const LightSou
             if (fallback != 0) store_both_spheres(camera, spots, balls + i, least + i);
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_spots_in_double(camera, balls, least, chunk, counts);
+        for (std::uint64_t rest = chunk.in_double; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = static_cast<std::uint32_t>(std::countr_zero(rest));
+            const bool visible = project_spot_in_double(camera, balls[i], least[i], i, chunk.rects, counts);
+            chunk.visible |= std::uint64_t{visible} << i;
+        }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }

@@ -18,24 +18,22 @@ using DepthKernel = void (*)(const DepthRows& depth, float skipped, float* lower
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob& job, Scratch& scratch, const BinShare<Id>& share);
 
-/// Stores bounds along the image axes of the part of a sphere beyond the near plane. The sphere is the centre (x, y, z),
-/// signed so that tile indices grow with x and y, and z is the view depth, and the radius: floats converted to double.
-void bounds_in_double(const Camera& camera, const double (&sphere)[4], double (&low)[2], double (&high)[2]);
-
-/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
-/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
-/// the listed lights that are in view. No tier has vectors for these few lights: see project/spheres_in_double.hpp.
+/// Projects in double light i of a chunk, a sphere for which float has no error bound: one that crosses the near plane or
+/// contains the eye, a tiny, huge or infinite one, or bad input, which it counts. Stores its rectangle, and returns whether
+/// it is in view. No tier has vectors for these few lights: see project/spheres_in_double.hpp.
 ///
-/// spheres  the spheres of all lights of the chunk, in view space
-void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk, ProjectCounts& counts);
+/// sphere  the light in view space
+bool project_in_double(const Camera& camera, const Sphere& sphere, std::uint32_t i, ChunkRects& rects,
+                       ProjectCounts& counts);
 
-/// Projects in double light i of a chunk, a box for which float has no error bound, as project_in_double() does spheres.
+/// Projects in double light i of a chunk, a box for which float has no error bound. Sets the light's bit in chunk.visible
+/// if it is in view.
 ///
 /// ball   the sphere that cuts the box, in view space after the camera's signs
 /// given  the box as it is given
 /// to     where to store the box in view space, but for ViewBox::around; may be null
-void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball,
-                                  const Box& given, std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
+void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball, const Box& given,
+                           std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
 
 /// For each value of a byte, the positions of its set bits in ascending order, one in each byte of a word. As indices
 /// of a shuffle they compact eight elements: they move the elements whose bit is set to the front.
