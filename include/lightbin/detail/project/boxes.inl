@@ -200,9 +200,8 @@ LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Rea
 /// an error of at most 8u L S, which the tolerance covers, see ViewBox. For the 4u L S that cell_planes.hpp asks for,
 /// 8u L S = 2^-21 L S is added, and its 2^-100 for underflow. Faces with L up to 2^-50 are left out.
 inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
-    Floats axes[3][3], normals[6][3];
-    find_unit_axes(box, axes);
-    find_normals(axes, box.taper, normals);
+    Floats normals[6][3];
+    find_normals(box, normals);
     const Floats slack = box.error + mul(size_of(box), broadcast(0x1p-21f));
     // Without tapers, opposite faces have opposite normals, for which the numbers below are the same but for signs.
     const bool tapered = movemask(less(box.taper, broadcast(1.0f))) != 0;
@@ -326,18 +325,6 @@ LIGHTBIN_INLINE Mask find_box_slopes(const Camera& camera, const ViewLanes& view
                 either(whole, less(broadcast(camera.min_float_depth), nearest_ball)));
 }
 
-/// Returns bounds on the slopes (orthographic: on view-space x and y) of balls wholly beyond the near plane.
-LIGHTBIN_INLINE ImageBounds<Floats> ball_bounds(const Camera& camera, const Floats (&ball)[4]) {
-    const Floats z = ball[2], r = ball[3];
-    ImageBounds<Floats> bounds = {{ball[0] - r, ball[1] - r}, {ball[0] + r, ball[1] + r}};
-    if (!camera.orthographic) {
-        const Floats e = mul(z - r, z + r), per_e = 1.0f / e;
-        tangent_slopes(ball[0], z, r, e, per_e, bounds.low[0], bounds.high[0]);
-        tangent_slopes(ball[1], z, r, e, per_e, bounds.low[1], bounds.high[1]);
-    }
-    return bounds;
-}
-
 /// Stores a vector of boxes, except the half spaces around them, which store_box_planes() stores.
 LIGHTBIN_INLINE void store_boxes(ViewBox* to, const BoxLanes<Floats>& box, const Floats (&ball)[4],
                                  const BoxBounds<Floats>& bounds) {
@@ -401,8 +388,8 @@ inline void project_lights<LightKind::box>(const Camera& camera, const LightSour
             if (!camera.orthographic)
                 safe = both(safe, find_box_slopes(camera, view, box, ball[2], movemask(visible) & kept, whole, bounds));
             if ((~movemask(whole) & kept) != 0)
-                visible = narrow_to_balls<float>(camera, ball_bounds(camera, ball), bounds.radius, bounds.image,
-                                                 visible);
+                visible = narrow_to_balls<float>(camera, sphere_bounds(camera, ball[0], ball[1], ball[2], ball[3]),
+                                                 bounds.radius, bounds.image, visible);
             const auto in_view = tile_rects<float>(camera, bounds.image, visible, chunk.rects, i);
             const unsigned in_float = movemask(safe) & kept, in_double = kept & ~in_float;
             chunk.visible |= std::uint64_t{movemask(in_view) & in_float} << i;

@@ -75,10 +75,8 @@ public:
         }
     }
 
-    std::size_t lights() const { return lights_; }               ///< lights given
-    std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, as Sphere defines it
-    std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
+    std::uint32_t visible() const { return counts_.visible; }  ///< lights in view
+    std::uint64_t area() const { return counts_.area; }        ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
     std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
@@ -86,7 +84,7 @@ public:
     LightCounts counts() const {
         const auto all = static_cast<std::uint32_t>(lights_);
         const detail::ViewLights& kinds = arrays_.view_lights;
-        return {all, rejected(), all - rejected() - visible(), kinds.first_spot, kinds.first_box};
+        return {all, counts_.rejected, all - counts_.rejected - counts_.visible, kinds.first_spot, kinds.first_box};
     }
 
     detail::FootprintSlice all() const { return {arrays_, runs(), visible(), area()}; }

@@ -127,6 +127,18 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
     return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
 }
 
+/// Returns bounds of spheres, whose view depths are z - r to z + r: with a perspective projection on slopes, for spheres
+/// wholly in front of the eye, and with an orthographic one on view-space x and y.
+LIGHTBIN_INLINE ImageBounds<Floats> sphere_bounds(const Camera& camera, Floats x, Floats y, Floats z, Floats r) {
+    ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
+    if (!camera.orthographic) {
+        const Floats e = mul(z - r, z + r), per_e = 1.0f / e;
+        tangent_slopes(x, z, r, e, per_e, bounds.low[0], bounds.high[0]);
+        tangent_slopes(y, z, r, e, per_e, bounds.low[1], bounds.high[1]);
+    }
+    return bounds;
+}
+
 /// Appends the footprints of the spheres first..first + count - 1 that are in view. Spheres are projected in float
 /// where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
 /// beyond the near plane. All other spheres, and those with a NaN, are projected in double.
@@ -162,13 +174,8 @@ inline void project_lights<LightKind::sphere>(const Camera& camera, const LightS
             const unsigned valid = (1u << used) - 1;
             if ((~movemask(culled) & valid) == 0) continue;
             auto in_float = and_not(safe, culled);
-            ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
-            if (!camera.orthographic) {
-                in_float = both(in_float, less(broadcast(camera.min_float_depth), nearest));
-                const Floats e = mul(nearest, farthest), per_e = 1.0f / e;
-                tangent_slopes(x, z, r, e, per_e, bounds.low[0], bounds.high[0]);
-                tangent_slopes(y, z, r, e, per_e, bounds.low[1], bounds.high[1]);
-            }
+            if (!camera.orthographic) in_float = both(in_float, less(broadcast(camera.min_float_depth), nearest));
+            const ImageBounds<Floats> bounds = sphere_bounds(camera, x, y, z, r);
             const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
             if (transformed && (source.out_spheres != nullptr || fallback != 0))
                 store_spheres(own + i, centre[0], centre[1], centre[2], r);

@@ -95,16 +95,14 @@ inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, con
     return rects.x0[i] <= rects.x1[i] && rects.y0[i] <= rects.y1[i];
 }
 
-/// Finds the bounds along the image axes, in perspective, of spots whose balls lie beyond the near plane.
+/// Narrows the slopes of spots' balls, which lie beyond the near plane, to those of the spots.
 ///
 /// size      |x| + |y| + |z| + r of the ball
 /// nearest   the spot's least view depth; at least 2^-16 of `size`
 /// across_z  the length of the cone's unit axis perpendicular to the view direction
-LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
-                                 ImageBounds<Floats>& bounds) {
-    const Floats z = spots.apex[2], e = mul(z - spots.radius, z + spots.radius), per_e = 1.0f / e;
-    tangent_slopes(spots.apex[0], z, spots.radius, e, per_e, bounds.low[0], bounds.high[0]);
-    tangent_slopes(spots.apex[1], z, spots.radius, e, per_e, bounds.low[1], bounds.high[1]);
+LIGHTBIN_INLINE void narrow_to_spots(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
+                                     ImageBounds<Floats>& bounds) {
+    const Floats z = spots.apex[2];
     const Floats along = mul(spots.radius, spots.cosine), rho = mul(spots.radius, spots.sine);
     const Floats rim_z = z + mul(along, spots.axis[2]), depth = mul(rho, across_z);
     const RimLanes rim = {1.0f / z,
@@ -165,7 +163,8 @@ inline void project_lights<LightKind::spot>(const Camera& camera, const LightSou
             } else {
                 in_float = both(in_float, both(less(broadcast(camera.min_float_depth), apex[2] - spots.radius),
                                                less(size * 0x1p-16f, nearest)));
-                find_slopes(spots, size, nearest, across_z, bounds);
+                bounds = sphere_bounds(camera, apex[0], apex[1], apex[2], spots.radius);
+                narrow_to_spots(spots, size, nearest, across_z, bounds);
             }
             const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
             if (fallback != 0) store_both_spheres(camera, spots, balls + i, least + i);

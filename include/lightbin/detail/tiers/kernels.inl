@@ -34,27 +34,19 @@
 
 #define LIGHTBIN_KERNELS
 
+// clang-format off: in this order
 #include <lightbin/detail/tiers/common.inl>
-
 #include <lightbin/detail/depth/depth_columns.inl>
-
 #include <lightbin/detail/depth/slice_indices.inl>
-
 #include <lightbin/detail/project/world_to_view.inl>
-
 #include <lightbin/detail/project/spheres.inl>
-
 #include <lightbin/detail/engine/lists.inl>
-
 #include <lightbin/detail/engine/cells.inl>
-
 #include <lightbin/detail/engine/cell_tests.inl>
-
 #include <lightbin/detail/engine/slab_tests.inl>
-
 #include <lightbin/detail/engine/depth_tests.inl>
-
 #include <lightbin/detail/engine/emit.inl>
+// clang-format on
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
