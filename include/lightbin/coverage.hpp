@@ -91,8 +91,8 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
 
 }  // namespace detail
 
-/// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
-/// are projected for it, as Binner::bin() projects them for the lists.
+/// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The
+/// lights are projected for it, as Binner::bin() projects them for the lists.
 ///
 /// lights, threads  as for Binner::bin()
 /// isa              use no wider instructions than these. The result does not depend on it.

@@ -71,7 +71,8 @@ public:
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
     /// conservative  the slices may be one more at either end, where that is faster to find
-    /// lights, runs  FootprintArrays and ranges of indices in them; overwrites `widest_lanes` elements of lights.ids after each
+    /// lights, runs  FootprintArrays and ranges of indices in them; overwrites `widest_lanes` elements of lights.ids
+    ///               after each
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
         // The conservative way to find slices compares no depth with slice boundaries. It takes all slices that meet

@@ -18,7 +18,8 @@
 // - in a slice (SlabCells) the squared distances along z and y are subtracted from the squared radius, and the
 //   rest is compared with that along x. Where a sphere meets a box, each difference loses at most u of the squared
 //   radius, like a sum above. Two differences that are flushed to zero lose 2^-125. The 2^-125 that is added covers
-//   these or a squared radius that is flushed, never both: the latter leaves 2^-125 - 0 - 0, which is not flushed.
+//   these or a squared radius that is flushed, never both: with a flushed radius the rest is 2^-125 - 0 - 0, which is
+//   not flushed.
 #pragma once
 
 #include <lightbin/options.hpp>

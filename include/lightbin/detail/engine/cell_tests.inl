@@ -28,8 +28,9 @@ LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const float*, const float*
     return less(broadcast(light.reach2), distance2(boxes, light.x, light.y, light.z));
 }
 
-/// Adds to the mask `missed` those of a vector of cells that lie outside of one of the half spaces `around` a light, by
-/// the formula in cell_planes.hpp, and returns it. Always inlined: GCC 12 loses half of a mask that a call returns.
+/// Returns the mask `missed` of cells in a vector, to which the cells are added that lie outside of one of the half
+/// spaces `around` a light, by the formula in cell_planes.hpp. Always inlined: GCC 12 loses half of a mask that a call
+/// returns.
 ///
 /// cells             the depths z0 and z1 of the cells, in the arrays that store_boxes() fills
 /// x_edges, y_edges  the edges of the cells' tiles in TileEdges::x and TileEdges::y
@@ -57,7 +58,7 @@ template <bool orthographic, class Shape>
 LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, const float* y_edges,
                                   const TestedShape<Shape>& light) {
     const Shape& shape = *light.shape;
-    auto missed = less(Floats{}, Floats{});  // none
+    auto missed = less(Floats{}, Floats{});  // an empty mask
     if (!std::is_same_v<Shape, ViewBox> || shape.radius < infinity)
         missed = less(broadcast(reach2_of(shape.radius)), distance2(cells, shape.x, shape.y, shape.z));
     return or_outside<orthographic>(missed, cells, x_edges, y_edges, shape.around);

@@ -108,8 +108,8 @@ inline void arrange_cells(const BinJob& job, unsigned x, unsigned top, BlockCell
         const Floats min = load_floats(bounds[0] + tile), max = load_floats(bounds[1] + tile);
         drawn |= (~std::uint64_t{movemask(less(max, min))} & every_lane) << tile;
         const float *const of_x = edges.x + tile % 8, *const of_y = edges.y + tile;
-        store_boxes(*job.camera, cells.boxes + tile, load_floats(of_x), load_floats(of_x + edges.high_x), load_floats(of_y),
-                    load_floats(of_y + edges.high_y), min, max);
+        store_boxes(*job.camera, cells.boxes + tile, load_floats(of_x), load_floats(of_x + edges.high_x),
+                    load_floats(of_y), load_floats(of_y + edges.high_y), min, max);
     }
     cells.drawn = drawn & ~std::uint64_t{0} >> 8 * (8 - rows);
     cells.depths = depth_range(cells.boxes, cells.drawn);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Step 2 of binning, with a depth test: finds in which of a block's 8x8 tiles each of its lights is listed. Included once
-// per tier (instruction set).
+// Step 2 of binning, with a depth test: finds in which of a block's 8x8 tiles each of its lights is listed. Included
+// once per tier (instruction set).
 //
 // The depth test works on a word for each light, with a bit for each tile: the tiles of the light's rectangle, and-ed
 // with the tiles whose cells it meets.
@@ -19,13 +19,13 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Takes the place of SlabCells, the boxes around the cells of a depth slice, where spheres are tested against a box for
-/// each cell, too, as spots and boxes always are.
+/// Takes the place of SlabCells, the boxes around the cells of a depth slice, where spheres are tested against a box
+/// for each cell, too, as spots and boxes always are.
 struct NoSlab {
     NoSlab(const SlabBoxes&, unsigned, unsigned) {}
 };
 
-/// Up to 64 consecutive lights of a block's list, of which lights[i] is set if light i is tested as the type Light.
+/// Up to 64 consecutive lights of a block's list: lights[i] is set if light i is tested as an object of the type Light.
 template <class Light> struct TestedLights {
     Light lights[64];
     std::uint64_t in_range = 0;  ///< bit i: lights[i] was set by add(), and meets the view depths that add() was given

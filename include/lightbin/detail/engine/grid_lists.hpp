@@ -10,8 +10,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all. Kernels without a depth test
-/// read footprints only, so all kinds of lights share those of spheres.
+/// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all. Kernels without a depth
+/// test read footprints only, so all kinds of lights use the kernels of spheres.
 template <class Id, Tested tested, LightKind kind>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
     if constexpr (tested == Tested::nothing)
@@ -53,7 +53,7 @@ public:
                                              [[maybe_unused]] const Sliced& sliced, const ZBounds& bounds,
                                              const ListKernels<Id>& kernels, Buffer<Scratch>& scratch,
                                              [[maybe_unused]] const Threads& parallel) {
-        tile_count_ = entries_ = 0;  // until there is a grid
+        tile_count_ = entries_ = 0;  // there is no grid until the end of this function
         BinJob common = {};
         if (const auto error = prepare(how, view, bounds, common)) return error;
         const bool clusters = how.is.slicing == Slicing::clusters;

@@ -144,8 +144,9 @@ inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::s
 /// Fills the table of Scratch::row_columns_of(), which has for each row of tiles a byte for each light, with a bit for
 /// each tile that it is listed in. These are the tiles of its rectangle that `narrow` leaves.
 ///
-/// narrow  a callable: narrow(columns, at) returns `columns`, the bytes of a vector of lights, without the tiles in which
-///         these are not listed. With a row's number and a light's index, `at` is row * list.padded_count() + index
+/// narrow  a callable: narrow(columns, at) returns `columns`, the bytes of a vector of lights, without the tiles in
+///         which these are not listed. With a row's number and a light's index, `at` is row * list.padded_count() +
+///         index
 template <class Narrow> void store_rectangles(Scratch& scratch, const BlockList& list, const Narrow& narrow) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of boxes in view space: their sizes, the normals of their faces, and how far they reach in a direction. Included
-// once per tier (instruction set).
+// Vectors of boxes in view space: their sizes, the normals of their faces, and how far they reach in a direction.
+// Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -43,11 +43,12 @@ template <class Reals> Reals size_of(const BoxLanes<Reals>& box) {
 /// that half axis i points to and away from. The normals of faces without an area are 0.
 ///
 /// The half axes are first divided by axes_size(), so that products of six of their coordinates neither overflow nor
-/// underflow; where that size is too small to divide by, they count as 0. Let h_0, h_1 and h_2 be the half axes, t the taper, and g_i = h_j x h_k for (i, j, k) = (0, 1, 2) and its cyclic
-/// permutations. A side of half axis i = 0 or 1 contains the other of these two half axes and the directions h_2 +-
-/// (1 - t) / 2 h_i, to which +-g_i - (1 - t) / 2 g_2 is perpendicular. The product h_i.g_i, which is the same for all
-/// i, is negative where the half axes are left-handed, and the normals are then negated. A half axis of zero is
-/// replaced by g_i, so that the sides of a flat box have normals in its plane.
+/// underflow; where that size is too small to divide by, they count as 0. Let h_0, h_1 and h_2 be the half axes, t the
+/// taper, and g_i = h_j x h_k for (i, j, k) = (0, 1, 2) and its cyclic permutations. A side of half axis i = 0 or 1
+/// contains the other of these two half axes and the directions h_2 +- (1 - t) / 2 h_i, to which +-g_i - (1 - t) / 2
+/// g_2 is perpendicular. The product h_i.g_i, which is the same for all i, is negative where the half axes are
+/// left-handed, and the normals are then negated. A half axis of zero is replaced by g_i, so that the sides of a flat
+/// box have normals in its plane.
 inline void find_normals(const BoxLanes<Floats>& box, Floats (&normals)[6][3]) {
     Floats axes[3][3], h[3][3], g[3][3];
     const Floats size = axes_size(box), per_size = select(less(broadcast(0x1p-120f), size), 1.0f / size, Floats{});

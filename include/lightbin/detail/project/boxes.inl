@@ -2,10 +2,10 @@
 // The projection of boxes, and of the parts of spheres in boxes, to tile rectangles, a vector of lights at a time.
 // Included once per tier.
 //
-// A rectangle is where those of the box and of the sphere, here called its ball, intersect. With a perspective
-// projection, the box's is that of the corners beyond the near plane and of the points where edges cross it. Each
-// corner is a sum of coordinates of the centre and the half axes, whose absolute values add up to S for all three
-// coordinates together.
+// A light's rectangle is the intersection of two rectangles: around its box, and around the sphere that cuts the box,
+// here called its ball. With a perspective projection, the rectangle around the box is the one around its corners
+// beyond the near plane and the points where its edges cross that plane. Each corner is a sum of coordinates of the
+// centre and the half axes, whose absolute values add up to S for all three coordinates together.
 //
 // Rounding in float, with the unit roundoff u = 2^-24: such sums have errors of at most 5u S, together for the three
 // coordinates of a corner. BoxLanes::error is 16u S, and the error of the transform from world space is added. By
@@ -134,7 +134,7 @@ template <class Reals> struct BoxBounds {
 /// Rounding is monotone, and the depths of the near and far plane are floats, so comparing rounded sums with these is
 /// exact.
 template <class Reals>
-LIGHTBIN_INLINE decltype(less(Reals{}, Reals{})) find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
+LIGHTBIN_INLINE auto find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
                                      BoxBounds<Reals>& bounds) {
     // The corners of the two faces along half axis 2 lie at  way +- k h_0 +- k h_1  from the ball's centre, where `way`
     // leads to the face's middle and k is 1 or the taper. Such a squared distance is at most the sum of the squared
@@ -175,8 +175,9 @@ LIGHTBIN_INLINE decltype(less(Reals{}, Reals{})) find_box_depths(const Camera& c
     return both(inside, less_equal(bounds.nearest, bounds.farthest));
 }
 
-/// Narrows the image bounds of boxes to those of their balls, where these cut the boxes. Returns `visible` without
-/// the lights of which both do not intersect in the numbers that tile_span() takes tiles from.
+/// Narrows the image bounds of boxes to the bounds `balls` of their balls (the spheres that cut them), where a ball
+/// cuts its box. Returns `visible` without the lights whose two bounds do not intersect, in the numbers from which
+/// tile_span() finds tiles.
 template <class Real, class Reals, class Mask>
 LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Reals>& balls, Reals radius,
                                      ImageBounds<Reals>& bounds, Mask visible) {
@@ -241,7 +242,7 @@ LIGHTBIN_INLINE auto move_boxes(const ViewLanes& view, const TransformLanes& tra
         ball[k] = given[k];
     box.taper = given[16];
     box.error = Floats{};
-    auto safe = less_equal(Floats{}, Floats{});  // all
+    auto safe = less_equal(Floats{}, Floats{});  // a mask of all boxes
     if (transform.to_view != nullptr) {
         transform_spheres(transform, ball[0], ball[1], ball[2], ball[3]);
         Floats from_origin[3], size = Floats{};
@@ -279,7 +280,7 @@ LIGHTBIN_INLINE auto move_boxes(const ViewLanes& view, const TransformLanes& tra
 
 /// Returns which of the boxes whose bit in `valid` is set are good input, see Box. Counts the bad ones.
 ///
-/// safe   a mask of boxes for which sums of all coordinates but `taper` are not NaN or infinite, nor those of axes 0
+/// safe   a mask of boxes whose coordinates were seen, by their sums, to be finite, and whose half axes are not all 0
 /// given  the numbers of the boxes, see load_boxes()
 template <class Mask>
 LIGHTBIN_INLINE unsigned good_boxes(Mask safe, const Floats (&given)[17], unsigned valid, ProjectCounts& counts) {
@@ -302,8 +303,8 @@ LIGHTBIN_INLINE unsigned good_boxes(Mask safe, const Floats (&given)[17], unsign
     return good;
 }
 
-/// Finds bounds on the slopes of boxes, with a perspective projection. Returns a mask of those for which float's rounding
-/// errors are small enough.
+/// Finds bounds on the slopes of boxes, with a perspective projection. Returns a mask of those for which float's
+/// rounding errors are small enough.
 ///
 /// shown  a bit for each box that may be in view
 /// whole  a mask of the boxes off which their balls cut nothing
@@ -345,7 +346,7 @@ inline void load_boxes(const ViewBox* from, BoxLanes<Floats>& box) {
     load_vec4s(&from->taper, sizeof *from, box.taper, nearest, farthest, box.error);
 }
 
-/// Appends the footprints of those of the boxes first..first + count - 1 that are in view. Boxes are projected in
+/// Appends the footprints of the boxes first..first + count - 1 that are in view. Boxes are projected in
 /// float where its rounding errors are at most 2^-9 of their depths and nothing overflows or underflows, and their
 /// balls if these cut them and lie wholly beyond the near plane; all others in double.
 template <>

@@ -142,10 +142,10 @@ struct BinJob : FootprintSlice {
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.
 template <class Id> struct BinShare {
     unsigned begin, end;
-    /// Where in memory the light index list of tile rows begin..end-1 begins. Kernels store whole vectors of ids, and so
-    /// may write up to `widest_vector` elements past its end.
+    /// Where in memory the light index list of tile rows begin..end-1 begins. Kernels store whole vectors of ids, and
+    /// so may write up to `widest_vector` elements past its end.
     Id* out;
-    std::uint32_t offset;  ///< how many ids the whole grid's light index list has before those of tile row `begin`
+    std::uint32_t offset;  ///< the element of the whole grid's light index list at which tile row `begin` begins
 };
 
 }}}  // namespace lightbin::detail

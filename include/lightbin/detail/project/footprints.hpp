@@ -24,9 +24,9 @@ template <class Source> std::optional<Error> refuse(const Source& source, std::u
     return error;
 }
 
-/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is lost
-/// where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding behind
-/// each part's run of footprints could push indices beyond 32 bits.
+/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is
+/// lost where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding
+/// behind each part's run of footprints could push indices beyond 32 bits.
 inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
     const std::size_t chunks = lights / ChunkRects::size + 1, workers = parallel.workers();
     return workers > 1 && lights >> 31 == 0 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
@@ -48,8 +48,8 @@ class Footprints {
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
     /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
-    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
-    /// of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
+    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere
+    /// and of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
                                detail::Kept kept = detail::Kept::nothing) {

@@ -127,8 +127,8 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
     return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
 }
 
-/// Returns bounds of spheres, whose view depths are z - r to z + r: with a perspective projection on slopes, for spheres
-/// wholly in front of the eye, and with an orthographic one on view-space x and y.
+/// Returns bounds of spheres, whose view depths are z - r to z + r: with a perspective projection on slopes, for
+/// spheres wholly in front of the eye, and with an orthographic one on view-space x and y.
 LIGHTBIN_INLINE ImageBounds<Floats> sphere_bounds(const Camera& camera, Floats x, Floats y, Floats z, Floats r) {
     ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
     if (!camera.orthographic) {

@@ -64,8 +64,8 @@ inline void clipped_slopes(double c, double z, double r, double near_depth, doub
 
 /// Finds bounds along the image axes of the part of a sphere beyond the near plane.
 ///
-/// sphere  the centre (x, y, z), signed so that tile indices grow with x and y, and z is the view depth, and the radius:
-///         floats that were converted to double
+/// sphere  the centre (x, y, z), signed so that tile indices grow with x and y, and z is the view depth, and the
+///         radius: floats that were converted to double
 inline void bounds_in_double(const Camera& camera, const double (&sphere)[4], double (&low)[2], double (&high)[2]) {
     // A radius of 0 is enlarged to much less than any float's rounding error, so that no square root is taken of 0.
     const double z = sphere[2], radius = sphere[3], r = max_of(radius, 0x1p-400);

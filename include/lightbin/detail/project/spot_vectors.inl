@@ -118,7 +118,7 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats slack = spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-20f));
     const auto wide = less_equal(spots.cosine, Floats{});
     const Floats sine = select(wide, broadcast(1.0f), spots.sine), cosine = maximum(spots.cosine, Floats{});
-    // Beyond 90 degrees the only plane is that of the rim: its place on the axis, from the apex on. Planes of narrower
+    // Beyond 90 degrees the only plane is the rim's: its place on the axis, from the apex on. Planes of narrower
     // cones go through the apex: 0.
     const Floats rim = mul(spots.radius, minimum(spots.cosine, Floats{}));
     Floats back[3];

@@ -54,7 +54,7 @@ LIGHTBIN_INLINE auto touches_cap(const RimLanes& rim, Floats slope, Floats acros
     return less_equal(mul(rim.cosine2 - 0x1p-20f, 1.0f + mul(slope, slope)), mul(across, abs(across)));
 }
 
-/// Narrows the slopes low..high along an image axis from the bounds of the balls to those of their sectors.
+/// Narrows the slopes low..high along an image axis, which bound the balls, to bounds of the balls' sectors, the spots.
 ///
 /// c            the apex's coordinate along the image axis
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
@@ -79,8 +79,8 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double a spot that float can't project, as project_in_double() does a sphere. The spot's tile rectangle is
-/// the intersection of those of `ball`, the sphere that its cone cuts, and `least`, its least_sphere().
+/// Projects in double a spot that float can't project, as project_in_double() does a sphere. The spot's tile rectangle
+/// is the intersection of two rectangles: of `ball`, the sphere that its cone cuts, and of `least`, its least_sphere().
 inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, const Sphere& least, std::uint32_t i,
                                    ChunkRects& rects, ProjectCounts& counts) {
     ChunkRects second;
@@ -95,7 +95,7 @@ inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, con
     return rects.x0[i] <= rects.x1[i] && rects.y0[i] <= rects.y1[i];
 }
 
-/// Narrows the slopes of spots' balls, which lie beyond the near plane, to those of the spots.
+/// Narrows `bounds` from the slopes of spots' balls, which lie beyond the near plane, to the slopes of the spots.
 ///
 /// size      |x| + |y| + |z| + r of the ball
 /// nearest   the spot's least view depth; at least 2^-16 of `size`

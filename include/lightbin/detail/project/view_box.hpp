@@ -13,8 +13,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A Box in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. Its radius is
-/// +inf where its ball, the sphere that cuts it, holds all of the box.
+/// A Box in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. Its radius
+/// is +inf where its ball, the sphere that cuts it, holds all of the box.
 struct ViewBox : Box {
     float nearest, farthest;  ///< view depths between which the part of the box in the ball lies
     float tolerance;      ///< how far the exact box can reach outside of this one; +inf where the box has no bounds

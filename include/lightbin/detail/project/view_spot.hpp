@@ -17,17 +17,18 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Spots whose cosine of the half angle is at most this, beyond 138 degrees, count as whole spheres. So do those made
-/// by Spot::whole(), whose lists are then the spheres'. The rim's plane would cut next to nothing off the others.
+/// by Spot::whole(), which are then listed as the same spheres are. Off other spots the rim's plane would cut next to
+/// nothing.
 inline constexpr float whole_ball_cosine = -0.75f;
 
-/// A Spot in view space, signed so that tile indices grow with x and y, and z is the view depth. Its axis has length 1. A
-/// spot that is a whole sphere has the axis 0, the cosine 0 and the tolerance 0: with these, the half spaces that depth
-/// tests compute around a spot contain every point.
+/// A Spot in view space, signed so that tile indices grow with x and y, and z is the view depth. Its axis has length 1.
+/// A spot that is a whole sphere has the axis 0, the cosine 0 and the tolerance 0: with these, the half spaces that
+/// depth tests compute around a spot contain every point.
 struct ViewSpot : Spot {
     /// The spot's least and greatest view depth. Rounding moved neither past any float that a test compares it with.
     float nearest, farthest;
     float tolerance;  ///< how far the exact spot can reach outside of this one, which is rounded to float
-    float unused;     ///< kernels store four numbers at a time
+    float unused;     ///< fills up the last four numbers, as kernels store four at a time
     CellPlane around[4];  ///< with a depth test, four half spaces around the spot, see store_planes()
 };
 

@@ -11,8 +11,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// A mask's bits, see movemask(), with every lane set.
 inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
 
-/// Projects lights of one kind to footprints. Specialised by spheres.inl, and by spots.inl and boxes.inl, which programs
-/// have that include spot.hpp or box.hpp.
+/// Projects lights of one kind to footprints. Specialised by spheres.inl, and by spots.inl and boxes.inl, which
+/// programs have that include spot.hpp or box.hpp.
 template <LightKind>
 void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                     const FootprintArrays& out, ProjectCounts& counts);

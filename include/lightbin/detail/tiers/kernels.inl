@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels of one tier (instruction set). The source of a kernel is an .inl file of templates over the tier's vector
-// class. This file includes all of them but those of spots and boxes, which shape_kernels.inl includes, and each after
+// class. This file includes all kernels but those of spots and boxes, which shape_kernels.inl includes, and each after
 // the files whose functions it calls. A tier is a header that defines the names below and includes this file, so each
 // kernel is compiled once per tier, in the tier's namespace. A kernel also has a member in Tier, at the end of this
 // file, and a function in kernels.hpp that returns it.

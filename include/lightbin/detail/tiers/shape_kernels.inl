@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kernels of spots and boxes of one tier, as kernels.inl has those of spheres and of all kinds together.
+// The kernels of spots and boxes of one tier (instruction set). kernels.inl has all other kernels.
 
 #define LIGHTBIN_KERNELS
 

@@ -18,16 +18,16 @@ using DepthKernel = void (*)(const DepthRows& depth, float skipped, float* lower
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob& job, Scratch& scratch, const BinShare<Id>& share);
 
-/// Projects in double light i of a chunk, a sphere for which float has no error bound: one that crosses the near plane or
-/// contains the eye, a tiny, huge or infinite one, or bad input, which it counts. Stores its rectangle, and returns whether
-/// it is in view. No tier has vectors for these few lights: see project/spheres_in_double.hpp.
+/// Projects in double light i of a chunk, a sphere for which float has no error bound: one that crosses the near plane
+/// or contains the eye, a tiny, huge or infinite one, or bad input, which it counts. Stores its rectangle, and returns
+/// whether it is in view. No tier has vectors for these few lights: see project/spheres_in_double.hpp.
 ///
 /// sphere  the light in view space
 bool project_in_double(const Camera& camera, const Sphere& sphere, std::uint32_t i, ChunkRects& rects,
                        ProjectCounts& counts);
 
-/// Projects in double light i of a chunk, a box for which float has no error bound. Sets the light's bit in chunk.visible
-/// if it is in view.
+/// Projects in double light i of a chunk, a box for which float has no error bound. Sets the light's bit in
+/// chunk.visible if it is in view.
 ///
 /// ball   the sphere that cuts the box, in view space after the camera's signs
 /// given  the box as it is given

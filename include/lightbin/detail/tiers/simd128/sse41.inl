@@ -3,6 +3,13 @@
 
 using FloatRegister = __m128;
 
+inline __m128 load_each_fourth(const char* from, std::size_t) {
+    return _mm_loadu_ps(reinterpret_cast<const float*>(from));
+}
+inline void store_each_fourth(char* to, std::size_t, __m128 vec4) {
+    _mm_storeu_ps(reinterpret_cast<float*>(to), vec4);
+}
+
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
@@ -10,18 +17,10 @@ using FloatRegister = __m128;
 #include <lightbin/detail/tiers/x86_vector.inl>
 
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
-    x = _mm_loadu_ps(&spheres[0].x);
-    y = _mm_loadu_ps(&spheres[1].x);
-    z = _mm_loadu_ps(&spheres[2].x);
-    radius = _mm_loadu_ps(&spheres[3].x);
-    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
+    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
-    _mm_storeu_ps(&spheres[0].x, x);
-    _mm_storeu_ps(&spheres[1].x, y);
-    _mm_storeu_ps(&spheres[2].x, z);
-    _mm_storeu_ps(&spheres[3].x, radius);
+    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 inline Floats ascending_bits(Floats values) {
     const __m128i bits = _mm_castps_si128(values);
