@@ -116,9 +116,16 @@ template <class Id>
 std::uint64_t scatter_lights(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];
     if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one(job, run, share);
-    const std::uint64_t entries = count_rows(job, scratch, share.begin, share.end, share.offset) - share.offset;
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    std::uint32_t offset = share.offset;
+    for (unsigned begin = share.begin; begin < share.end; begin += rows_counted_at_once)
+        offset = count_rows(job, scratch, begin, min_of(begin + rows_counted_at_once, share.end), offset);
+    const std::uint64_t entries = offset - share.offset;
+    if (entries == 0) return 0;  // also where the rows have no tiles
+    const std::size_t step = rows_filled_at_once(share.end - share.begin, width, job.visible, entries);
     Id* const list = share.out - share.offset;  // the whole grid's index list
-    if (entries > 0) fill_rows(job, list, share.begin, share.end);
+    for (std::size_t begin = share.begin; begin < share.end; begin += step)
+        fill_rows(job, list, begin, min_of<std::size_t>(begin + step, share.end));
     return entries;
 }
 
