@@ -144,8 +144,9 @@ void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& sla
     if constexpr (slab_alone<tested, kind>) {
         store_met_boxes(job, scratch, SlabCells(slab, x, top), list);
         const std::uint8_t* const met = scratch.met_boxes();
-        store_rectangles(scratch, list,
-                         [met](Bytes columns, std::size_t at) { return columns & load_bytes(met + at); });
+        store_rectangles(scratch, list, [met](Bytes columns, std::size_t at) {
+            return static_cast<Bytes>(columns & load_bytes(met + at));
+        });
     } else {
         const std::conditional_t<tested == Tested::slab, SlabCells, NoSlab> slab_cells(slab, x, top);
         mask_lights<kind>(job, scratch, slab_cells, x, top, list);
