@@ -5,7 +5,7 @@
 
 #include "conditions.hpp"
 
-#include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/detail/stages/footprints.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>

@@ -298,6 +298,8 @@ std::string advise_scene(const Scene& scene, const AdviseSettings& settings) {
                  "             %.3f ms by all parts that combine, those that save little, too\n",
                  ms(found.plain.total()), found.plain_plan.tile_size, ms(found.untiled.total()),
                  ms(found.everything.total()));
+    page += text("             %.3f ms by %s, as advise() weighs it\n", ms(costs->masks().total_ns),
+                 to_string(costs->masks()).c_str());
     page += "advised      " + to_string(found.way.plan) + "\n";
     for (const Part& part : found.parts)
         page += to_string(part.verdict);

@@ -31,6 +31,8 @@ lightbin::Advice WayCosts::advise() {
         std::vector<lightbin::Plan> plans(bounded.plans().begin(), bounded.plans().end());
         for (const lightbin::Plan& plan : sliced.plans())
             if (plan.slicing != lightbin::Slicing::none) plans.push_back(plan);
+        const lightbin::Advice all(plans);
+        masks_ = *std::find_if(all.plans().begin(), all.plans().end(), [](const auto& plan) { return plan.masks; });
         std::erase_if(plans,
                       [](const lightbin::Plan& plan) { return plan.masks; });  // WayCosts measures lists
         return lightbin::Advice(std::move(plans));

@@ -64,7 +64,9 @@ public:
     void set(const Prices& prices) { prices_ = prices; }
 
     // Every plan of lightbin::advise(), with all Z bounds that can be had, and of advise_slices().
+    // Plans with masks are left out, but for the cheapest of them, masks().
     lightbin::Advice advise();
+    const lightbin::Plan& masks() const { return masks_; }
 
     // Builds each way's lists a dozen times, by turns, each time with the lights a little aside, and takes the medians.
     // Bytes and evaluations are counted with the lights where they are. A way whose plan it can't measure costs infinity.
@@ -106,6 +108,7 @@ private:
     lightbin::Slices clusters_, z_bins_;
     double clusters_ns_ = 0, z_bins_ns_ = 0;  // to make them
     Prices prices_;
+    lightbin::Plan masks_;  // by advise()
     std::map<std::tuple<int, bool, bool>, Reduced> reduced_;
     std::size_t workers_;
     std::unique_ptr<Pool> pool_;

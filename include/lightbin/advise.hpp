@@ -173,4 +173,4 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
 }}  // namespace lightbin
 
 // The definitions.
-#include <lightbin/detail/advise/weigh.hpp>
+#include <lightbin/detail/tools/weigh.hpp>

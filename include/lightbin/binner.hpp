@@ -2,8 +2,8 @@
 // Binner: makes light grids in one call. It owns the grids and the scratch memory that making them takes.
 #pragma once
 
-#include <lightbin/detail/depth/binner_inputs.hpp>
-#include <lightbin/detail/engine/stages.hpp>
+#include <lightbin/detail/stages/binner_inputs.hpp>
+#include <lightbin/detail/stages/stages.hpp>
 #include <lightbin/list_format.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>

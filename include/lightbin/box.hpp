@@ -4,8 +4,8 @@
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/kinds/shape_kernels.hpp>
 #include <lightbin/detail/project/spheres_around_shapes.hpp>
-#include <lightbin/detail/tiers/shape_kernels.hpp>
 #include <lightbin/matrix.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>

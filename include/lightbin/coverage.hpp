@@ -2,8 +2,8 @@
 // What each light covers: its tiles, its depths and its size in pixels; and in how many cells it is listed.
 #pragma once
 
-#include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/detail/project/spheres_around_shapes.hpp>
+#include <lightbin/detail/stages/footprints.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <vector>

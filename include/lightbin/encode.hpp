@@ -2,8 +2,6 @@
 // Writes a light grid's lists in another format: narrower ids, or a sentinel at each list's end.
 #pragma once
 
-#include <lightbin/detail/base/checked_sizes.hpp>
-#include <lightbin/light_grid.hpp>
 #include <lightbin/list_format.hpp>
 
 #include <algorithm>
@@ -13,20 +11,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Returns how many lights a format can number. A sentinel takes one of the ids.
-inline std::uint64_t countable_lights(const ListFormat& format) {
-    const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
-    return format.encoding == ListEncoding::sentinel ? values - 1 : values;
-}
-
 namespace detail {
-
-/// Returns the error of a format that is inconsistent, and so refused by encode() and shader_snippet().
-inline std::optional<Error> refuse(const ListFormat& format) {
-    if (format.encoding == ListEncoding::sentinel && format.capacity == 0)
-        return Error{ErrorCode::capacity_unknown};
-    return std::nullopt;
-}
 
 template <class To, class Id>
 void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* out) {
@@ -44,16 +29,6 @@ void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* 
 }
 
 }  // namespace detail
-
-/// Returns how many bytes, a multiple of 4, encode() needs for `tiles` tiles and `entries` ids; 2^64 - 4 for any more.
-inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
-    const std::uint64_t elements = format.encoding == ListEncoding::offset_count
-                                       ? entries
-                                       : detail::product_of_sizes(tiles, format.capacity);
-    const std::uint64_t width = static_cast<std::uint64_t>(format.ids);
-    constexpr std::uint64_t limit = ~std::uint64_t{3};
-    return elements > limit / width ? limit : (elements * width + 3) / 4 * 4;
-}
 
 /// What encode() left out of lists that are longer than the capacity of the sentinel format.
 struct Encoded {

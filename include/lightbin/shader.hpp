@@ -191,4 +191,4 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {});
 }}  // namespace lightbin
 
 // The definitions.
-#include <lightbin/detail/shader/snippet.hpp>
+#include <lightbin/detail/shaders/snippet.hpp>

@@ -56,4 +56,4 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 }}  // namespace lightbin
 
 // The definitions.
-#include <lightbin/detail/shader/cull.hpp>
+#include <lightbin/detail/shaders/cull.hpp>

@@ -73,4 +73,4 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 }}  // namespace lightbin
 
 // The definitions.
-#include <lightbin/detail/shader/reduce.hpp>
+#include <lightbin/detail/shaders/reduce.hpp>

@@ -88,4 +88,16 @@ inline float light_window(float distance, float range) {
     return w * w;
 }
 
+namespace detail {
+
+/// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes
+/// are copied, because access through a Sphere pointer would break the aliasing rules.
+inline Sphere load_sphere(const Sphere* from) {
+    Sphere sphere;
+    std::memcpy(&sphere, from, sizeof sphere);
+    return sphere;
+}
+
+}  // namespace detail
+
 }}  // namespace lightbin

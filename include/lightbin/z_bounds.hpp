@@ -2,7 +2,7 @@
 // Z bounds: the minimum and maximum view depth of what is drawn in each tile, reduced from a depth buffer.
 #pragma once
 
-#include <lightbin/detail/depth/tile_extremes.hpp>
+#include <lightbin/detail/stages/tile_extremes.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

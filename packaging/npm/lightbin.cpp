@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The WebAssembly module of the npm package: the C side without what build.sh leaves out, and the module's memory.
 #define LIGHTBIN_IMPLEMENTATION
-#include <lightbin/detail/tiers/shape_kernels.hpp>
+#include <lightbin/detail/kinds/shape_kernels.hpp>
 
 // All but the kernels is compiled for size alone.
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)

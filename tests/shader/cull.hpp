@@ -3,6 +3,7 @@
 #pragma once
 
 #include "builders.hpp"
+#include "reader_text.hpp"
 
 #include <lightbin/masks.hpp>
 #include <lightbin/shader_cull.hpp>
@@ -273,6 +274,45 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     for (int y = 0; y < rows; ++y)
         compare(made.row(y), expected.row(y));
     return tally;
+}
+
+/// Reads masks by the snippet in every pixel of a view, on the device that made them, and returns whether each pixel has
+/// the lights whose bits its column and its row have, in ascending order.
+template <class Device> bool read_masks(Device& device, const CullCase& scene, const CulledGrid& grid) {
+    using namespace lightbin;
+    const ShaderOptions options = {.language = scene.options.language, .masks = true, .prefix = scene.options.prefix};
+    const ShaderText snippet = *shader_snippet(options);
+    const auto columns = static_cast<std::size_t>(scene.view.tiles_x()), each = std::size_t{grid.masks[0]};
+    Job job;
+    job.name = scene.name + ", masks read";
+    job.hlsl = detail::Dialect{options.language}.hlsl;
+    job.width = static_cast<std::uint32_t>(scene.view.viewport().width);
+    job.height = static_cast<std::uint32_t>(scene.view.viewport().height);
+    job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
+    job.text = reader_text(options, snippet, Stage::compute, job.width, job.height);
+    BuilderData data;
+    const ShaderGrid constants = shader_grid(scene.view);
+    data.put("grid", std::span(&constants, 1));
+    data.put("masks", grid.masks);
+    for (const ShaderBinding& binding : snippet.bindings)
+        job.inputs.push_back(data.input(binding, options.prefix));
+    for (std::uint32_t y = 0; y < job.height; ++y)
+        for (std::uint32_t x = 0; x < job.width; ++x) {
+            const std::uint32_t tx = x / constants.tile_size, ty = y / constants.tile_size;
+            const std::uint32_t *const column = &grid.masks[1 + tx * each],
+                                *const row = &grid.masks[1 + (columns + 1 + ty) * each];
+            std::uint32_t hash = 2166136261u, sum = 0, count = 0;
+            for (std::uint32_t light = 0; light < 32 * each; ++light)
+                if ((column[light / 32] & row[light / 32]) >> (light % 32) & 1) {
+                    hash = (hash ^ light) * 16777619u;
+                    sum += ++count * light;
+                }
+            for (const std::uint32_t word : {tx + (ty << 16), count, hash, sum})
+                job.expected.push_back(word);
+        }
+    job.result = job.inputs.size();
+    job.inputs.push_back(result_input(job.expected.size() * 4));
+    return job.accepts(device.run(job));
 }
 
 /// The words of an array of lights, each of `stride` words, with the light at word `first`.

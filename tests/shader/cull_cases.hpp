@@ -131,6 +131,8 @@ private:
             tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
             add("sizes", tally);
             add("sizes, masks", compare_masks(scene, grid, lights));
+            if (view.tile_count() > 0 && view.viewport().width < 1000)
+                total_.wrong += !read_masks(device, scene, grid);
         }
     }
 

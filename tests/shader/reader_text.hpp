@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A shader around the snippet that tells what every pixel reads, and what it is of. All but the loops, the result and the
-// entry point is written once, in the GLSL that detail/shader/writer.hpp describes, and translated to each language.
+// entry point is written once, in the GLSL that detail/shaders/writer.hpp describes, and translated to each language.
 #pragma once
 
 #include "job.hpp"
@@ -257,4 +257,14 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
                                Stage stage, std::uint32_t width, std::uint32_t height,
                                bool multiview = false) {
     return ReaderText(options, stage, width, height, multiview).around(snippet.text);
+}
+
+/// What a compute shader writes.
+inline Input result_input(std::size_t bytes) {
+    using namespace lightbin;
+    Input result;
+    result.binding = {
+        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
+    result.bytes.resize(bytes, std::byte{0xee});
+    return result;
 }

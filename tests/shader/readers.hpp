@@ -5,6 +5,7 @@
 #include "builders.hpp"
 #include "reader_text.hpp"
 
+#include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
@@ -170,16 +171,6 @@ inline void fit_texture(Input& input, int tiles_x) {
     const std::size_t row = std::size_t{input.width} * input.binding.stride;
     input.height = static_cast<std::uint32_t>((input.bytes.size() + row - 1) / row);
     input.bytes.resize(row * input.height, std::byte{0xee});
-}
-
-/// What a compute shader writes.
-inline Input result_input(std::size_t bytes) {
-    using namespace lightbin;
-    Input result;
-    result.binding = {
-        "result_block", ShaderResource::writable_buffer, {result_binding, 0}, TexelFormat::none, 16, 0, 0};
-    result.bytes.resize(bytes, std::byte{0xee});
-    return result;
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.

@@ -5,7 +5,7 @@
 #include <lightbin/detail/c/arguments.hpp>
 
 #include <lightbin/box.hpp>
-#include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/detail/stages/footprints.hpp>
 #include <lightbin/spot.hpp>
 
 #include <iterator>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Finds the view depths of lights and, to find the depth slices that they meet, the entries (buckets) of a SliceTable's
 // lookup table for these depths. A vector of lights at a time. Included once per tier (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
-#include <lightbin/detail/tiers/common.inl>
+#include <lightbin/detail/depth/slice_table.hpp>
+#include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/vectors/common.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {

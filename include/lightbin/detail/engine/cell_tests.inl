@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests a light against the cells of a block's 64 tiles, a vector of cells at a time. Included once per tier
 // (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/engine/cells.inl>
 #endif

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Prepares what the depth test compares lights with: the Z bounds of a block's 64 tiles, and the boxes around their
 // cells, whose rounding cell_boxes.hpp derives. Included once per tier (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
-#include <lightbin/detail/tiers/common.inl>
+#include <lightbin/detail/engine/block.hpp>
+#include <lightbin/detail/vectors/common.inl>
+#include <lightbin/detail/view/cell_planes.hpp>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// All thresholds of binning. They choose between methods that give the same lists, and were measured with bench/binning
-// on a Zen 4 and a Zen 5.
+// The thresholds of binning to lists. They choose between methods that give the same lists, and were measured with
+// bench/binning on a Zen 4 and a Zen 5.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>

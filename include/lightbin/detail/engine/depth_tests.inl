@@ -12,7 +12,7 @@
 //                          . . . . . . . .
 //
 // The result is the table that Scratch::row_columns_of() describes, from which emit.inl emits the tiles.
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/engine/slab_tests.inl>
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written
 // strictly in sequence, without counting, scattering or sorting. Included once per tier (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/engine/depth_tests.inl>
 #endif

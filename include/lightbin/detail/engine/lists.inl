@@ -8,9 +8,11 @@
 //
 // No branch depends on which tiles a light covers. Coordinates are bytes that count from the first band and from the
 // first column of a panel of 248 tile columns; a wider grid has several panels.
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
-#include <lightbin/detail/tiers/common.inl>
+#include <lightbin/detail/engine/block.hpp>
+#include <lightbin/detail/engine/costs.hpp>
+#include <lightbin/detail/vectors/common.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {

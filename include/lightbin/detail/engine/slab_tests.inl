@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests a sphere against the cells of a depth slice, all of which lie between the same two depths. Included once per
 // tier (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/engine/cell_tests.inl>
 #include <lightbin/detail/engine/lists.inl>

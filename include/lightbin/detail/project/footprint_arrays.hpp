@@ -122,6 +122,23 @@ struct ProjectedChunk {
     std::uint64_t in_double;  ///< a mask of the chunk's lights to be projected in double precision
 };
 
+/// Projects in double light i of a chunk, a sphere for which float has no error bound: one that crosses the near plane
+/// or contains the eye, a tiny, huge or infinite one, or bad input, which it counts. Stores its rectangle, and returns
+/// whether it is in view. No tier has vectors for these few lights: see project/spheres_in_double.inl.
+///
+/// sphere  the light in view space
+bool project_in_double(const Camera& camera, const Sphere& sphere, std::uint32_t i, ChunkRects& rects,
+                       ProjectCounts& counts);
+
+/// Projects in double light i of a chunk, a box for which float has no error bound. Sets the light's bit in
+/// chunk.visible if it is in view.
+///
+/// ball   the sphere that cuts the box, in view space after the camera's signs
+/// given  the box as it is given
+/// to     where to store the box in view space, but for ViewBox::around; may be null
+void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball, const Box& given,
+                           std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
+
 /// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;

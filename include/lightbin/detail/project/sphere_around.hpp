@@ -31,14 +31,6 @@ inline Sphere sphere_around(double x, double y, double z, double radius) {
     return {nearest.x, nearest.y, nearest.z, float_above(reach)};
 }
 
-/// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes
-/// are copied, because access through a Sphere pointer would break the aliasing rules.
-inline Sphere load_sphere(const Sphere* from) {
-    Sphere sphere;
-    std::memcpy(&sphere, from, sizeof sphere);
-    return sphere;
-}
-
 struct Triple {
     double x, y, z;
 };

@@ -6,12 +6,18 @@
 // slope s, and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds
 // are the slopes of the two tangents from the eye (Mara and McGuire, "2D Polyhedral Bounds of a Clipped,
 // Perspective-Projected 3D Sphere", JCGT 2(2), 2013).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
+
+/// Projects lights of one kind to footprints. Specialised here for spheres, and in kinds/ for spots and boxes, which
+/// programs have that include spot.hpp or box.hpp.
+template <LightKind>
+void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
+                    const FootprintArrays& out, ProjectCounts& counts);
 
 /// Bounds of a vector of lights on the slopes x / depth and y / depth (orthographic: on view-space x and y).
 template <class Reals> struct ImageBounds { Reals low[2], high[2]; };

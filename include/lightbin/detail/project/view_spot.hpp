@@ -10,8 +10,8 @@
 // spots given in world space the errors of the transform are added, see world_to_view.hpp.
 #pragma once
 
-#include <lightbin/detail/engine/cell_planes.hpp>
 #include <lightbin/detail/project/light_kind.hpp>
+#include <lightbin/detail/view/cell_planes.hpp>
 #include <lightbin/sphere.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The transform from world space to view space, a vector of spheres at a time; world_to_view.hpp derives its error
 // bounds. Included once per tier (instruction set).
-#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
-#include <lightbin/detail/tiers/common.inl>
+#include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/vectors/common.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {

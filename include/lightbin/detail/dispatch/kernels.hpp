@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Which kernel runs: the choice of a tier by the instruction set.
+#pragma once
+
+#include <lightbin/detail/dispatch/tiers.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The tier that every machine has that runs the program.
+#if defined(LIGHTBIN_VECTORS_ONLY)
+namespace least = simd128;
+#else
+namespace least = scalar;
+#endif
+
+/// Returns pick(Tier()), where Tier has the kernels of an instruction set, which the machine must support.
+template <class Pick> auto with_tier(Isa isa, Pick pick) {
+#if defined(LIGHTBIN_X86)
+    if (isa == Isa::avx512) return pick(avx512::Tier{});
+    if (isa == Isa::avx2) return pick(avx2::Tier{});
+#endif
+#if defined(LIGHTBIN_HAS_SIMD128)
+    if (isa == Isa::simd128) return pick(simd128::Tier{});
+#endif
+    static_cast<void>(isa);
+    return pick(least::Tier{});
+}
+
+template <LightKind kind> ProjectKernel project_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template project_kernel<kind>(); });
+}
+
+template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<kind>(); });
+}
+
+/// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
+inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
+    if (isa == Isa::scalar) return scalar::Tier::depth_kernel();
+    if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
+        return with_tier(isa, [](auto tier) { return tier.depth_kernel(); });
+    return depth_kernel(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
+}
+
+}}}  // namespace lightbin::detail

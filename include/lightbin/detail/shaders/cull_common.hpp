@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// What the passes that make a light grid on the GPU have in common: the refusal of options, the constants, the buffer
+// `scratch`, and how blocks of tiles are marked.
+#pragma once
+
+#include <lightbin/cull_options.hpp>
+#include <lightbin/detail/shaders/writer.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+// Numbers that the texts and the plan share.
+inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< mask blocks: bits of 64 lights fill 8 KB of shared memory
+inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a light's first and last slice, 16 bits each
+
+/// Returns the first error among the options, or nothing.
+inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
+    return refuse_common(
+        options,
+        {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
+         options.lists, options.grid},
+        {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
+         {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
+         {options.slicing == Slicing::z_bins, {ErrorCode::no_such_slicing_shader}}});
+}
+
+/// How many invocations a group of a pass has.
+constexpr unsigned cull_threads(CullPass pass) {
+    return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
+}
+
+/// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
+inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
+    const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
+    if (!options.depth_test) return words;
+    return words + (options.kind == CullKind::spot ? 20u : 4u);
+}
+
+/// Returns the shader's expression for where the record of a light begins in `scratch`, from that for its id.
+inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
+    return std::to_string(sizeof(CullTotals) / 4) + "u + " + id + " * " + std::to_string(cull_record_words(options)) +
+           "u";
+}
+
+/// Declares the members of ShaderCull, without those that lights in view space don't need.
+inline void declare_cull_constants(ShaderWriter& writer, const CullShaderOptions& options) {
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
+                                             {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
+                                             {"vec4", "signs"},   {"vec4", "planes"}};
+    if (options.world_space)
+        for (const char* name : {"origin", "column_x", "column_y", "column_z", "origin_image"})
+            constants.push_back({"vec4", name});
+    writer.declare_constants(constants, options.grid, false, 1, true);
+}
+
+inline void declare_scratch(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.declare_storage("scratch", "uint", "", options.scratch, 4);
+}
+
+/// Adds `sum`, which adds two numbers and returns 2^32 - 1 if the sum overflows.
+inline void add_saturated_sum(ShaderWriter& writer) {
+    writer.add("\nuint $sum(uint a, uint b) {\n    return a + min(b, ~a);\n}\n");
+}
+
+/// Returns the shader's expression for the number of layers of mask blocks: with clusters one for each 2^$blocks.w
+/// slices, else one.
+inline const char* cull_layers(const CullShaderOptions& options) {
+    return options.slicing == Slicing::clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u";
+}
+
+/// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks` before,
+/// `mark` for each light in view, and `write_masks` after. A mask block is a block of tiles, see plan_blocks(), that
+/// has a bitmask of the lights in it, 32 to a word.
+inline void add_masks_of_group(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    writer.declare_shared("block_bits", 2 * cull_max_blocks, true);
+    writer.add(std::string("\nuint $block_count() {\n    return $blocks.x * $blocks.y * ") + cull_layers(options) +
+               R"(;
+}
+
+void $clear_masks(uint thread) {
+    uint words = 2u * $block_count();
+    for (uint i = thread; i < words; i += 64u) { atomicStore(&$block_bits[i], 0u); }
+}
+
+void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
+    uint row_begin = (thread >> 5u) * $block_count();
+    uint bit = 1u << (thread & 31u);
+)" + (clusters ? "    for (uint z = layers.x >> $blocks.w; z <= layers.y >> $blocks.w; z += 1u) {\n"
+                         : "    {\n        uint z = 0u;\n") +
+               R"(        for (uint y = rows.x >> $blocks.z; y <= rows.y >> $blocks.z; y += 1u) {
+            uint row = row_begin + (z * $blocks.y + y) * $blocks.x;
+            for (uint x = columns.x >> $blocks.z; x <= columns.y >> $blocks.z; x += 1u) {
+                atomicOr(&$block_bits[row + x], bit);
+            }
+        }
+    }
+}
+
+void $write_masks(uint number, uint thread) {
+    uint words = 2u * $block_count();
+    uint begin = $places.x + number * words;
+    for (uint i = thread; i < words; i += 64u) { $scratch[begin + i] = atomicLoad(&$block_bits[i]); }
+}
+)");
+}
+
+}}}  // namespace lightbin::detail

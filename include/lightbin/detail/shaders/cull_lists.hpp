@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+// The passes count, sums, offsets and fill: they make the lists of all cells from the lights' rectangles and masks.
+//
+// A group of 64 invocations has the cells of 8x8 tiles, one each. It stages the lights of the mask block around these
+// tiles in shared memory, by ascending id, 32 words of the mask at a time: each invocation reads half a word, and notes
+// for each of its lights which columns and rows of the 8x8 tiles the light's rectangle covers. Then each column and
+// each row of tiles gets a word for each 32 staged lights, with a bit for each that covers it: a tile's lights are its
+// column's word AND its row's. An invocation visits these bits in ascending order, so lists ascend, whatever the order
+// in which invocations run. The lights are divided into segments, so that there are enough groups where there are few
+// cells. Prefix sums of the counts of a cell's segments say where each segment's part of the list begins.
+#pragma once
+
+#include <lightbin/detail/shaders/cull_common.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// Adds the function `depths_of`, which returns the view depths of the cells that the depth test compares lights
+/// with: a tile's Z bounds, or a slice's depths. A Z bound that is NaN excludes nothing; it is recognised by its
+/// bits, as compilers may assume that no float is NaN, and infinity is made a finite depth beyond all lights that
+/// are tested.
+inline void add_cell_depths(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool max_only = options.max_only && options.slicing != Slicing::clusters;
+    writer.add(std::string(R"(
+float $finite(float depth, float other) {
+    uint bits = floatBitsToUint(depth);
+    float result = clamp(depth, -1e30, 1e30);
+    if ((bits & 0x7fffffffu) == 0x7f800000u) {
+        result = 1e30;
+        if (bits != 0x7f800000u) { result = -1e30; }
+    }
+    if ((bits & 0x7fffffffu) > 0x7f800000u) { result = other; }
+    return result;
+}
+
+vec2 $depths_of(uint cell) {
+    vec2 z = $z_bounds[cell];
+    return vec2()") + (max_only ? "-1e30" : "$finite(z.x, -1e30)") + ", $finite(z.y, 1e30));\n}\n");
+}
+
+/// Adds `meets_half_space`, which tells whether the box around a cell has a point p with  n.p <= most:  whether the
+/// least n.p of the box is at most `most`. The Binner tests the cell itself, so it lists no light that this test
+/// excludes. Its n differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(). So `least`
+/// subtracts 2^-14 of the box's greatest coordinate.
+inline void add_half_space(ShaderWriter& writer) {
+    writer.add(R"(
+float $least(float n, vec2 ends) {
+    vec2 far = clamp(ends, vec2(-1e18, -1e18), vec2(1e18, 1e18));
+    return min(n * far.x, n * far.y) - max(abs(far.x), abs(far.y)) * 6.1035156e-5;
+}
+
+bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
+    float least = $least(uintBitsToFloat($scratch[at]), columns);
+    least += $least(uintBitsToFloat($scratch[at + 1u]), rows);
+    least += $least(uintBitsToFloat($scratch[at + 2u]), z);
+    return least <= uintBitsToFloat($scratch[at + 3u]);
+}
+)");
+}
+
+/// Adds the functions with which the depth test finds a cell's view-space box, as view/cell_boxes.hpp does, and the
+/// function `meets_box`. In perspective the sides of a cell are slopes, which a depth multiplies.
+///
+/// Rounding, u = 2^-24. A box must hold the Binner's: an edge that the Binner computes is within u of the product
+/// of side and depth, and one that a GPU computes within 2u, so 2^-20 = 16u outward is more than enough. The
+/// distances, each a difference, have a relative error of 2u, the sum of their squares of 10u, the Binner's of 5u;
+/// 2^-18 of the squared radius = 64u is more. 2^-80 is for squares that are flushed to zero.
+inline void add_cell_box(ShaderWriter& writer, const CullShaderOptions& options) {
+    if (options.orthographic) {
+        writer.add("\nvec2 $across(vec2 sides, vec2 z) {\n    return sides;\n}\n");
+    } else {
+        writer.add(R"(
+vec2 $across(vec2 sides, vec2 z) {
+    float low = min(sides.x * z.x, sides.x * z.y);
+    float high = max(sides.y * z.x, sides.y * z.y);
+    return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);
+}
+)");
+    }
+    if (options.kind == CullKind::spot) add_half_space(writer);
+    writer.add(R"(
+float $apart(float at, vec2 ends) {
+    return max(max(ends.x - at, at - ends.y), 0.0);
+}
+
+bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
+    float radius = uintBitsToFloat($scratch[at + 3u]);
+    float x = $apart(uintBitsToFloat($scratch[at]), columns);
+    float y = $apart(uintBitsToFloat($scratch[at + 1u]), rows);
+    float d = $apart(uintBitsToFloat($scratch[at + 2u]), z);
+    bool met = radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
+)" + std::string(options.kind == CullKind::spot ? R"(    if (met && radius >= 0.0) {
+        for (uint i = 4u; i < 20u; i += 4u) { met = met && $meets_half_space(at + i, columns, rows, z); }
+    }
+)" : "") + "    return met;\n}\n");
+}
+
+/// Adds `tiles_met`, which returns what the rectangle of the light whose record begins at `at` covers of the 8x8 tiles
+/// from `corner` on: a bit for each column and, from bit 8 on, for each row; 0 if the light does not meet the slice.
+inline void add_tiles_met(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    writer.add(std::string(R"(
+// The bits from the tile `first` to the tile `last`, of 8 tiles from `begin` on.
+uint $bits_of(uint first, uint last, uint begin) {
+    uint low = max(first, begin) - begin;
+    uint end = min(last + 1u, begin + 8u) - min(last + 1u, begin);
+    uint result = 0u;
+    if (low < end) { result = (1u << end) - (1u << low); }
+    return result;
+}
+
+uint $tiles_met(uint at, uvec2 corner, uint slice) {
+    uint first = $scratch[at];
+    uint last = $scratch[at + 1u];
+    uint bits = $bits_of(first & 0xffffu, last & 0xffffu, corner.x) |
+                ($bits_of(first >> 16u, last >> 16u, corner.y) << 8u);
+)") + (clusters ? R"(    uint slices = $scratch[at + 2u];
+    if (slice < (slices & 0xffffu) || slice > slices >> 16u) { bits = 0u; }
+)" : "") + "    return bits;\n}\n");
+}
+
+inline void declare_stage(ShaderWriter& writer) {
+    writer.declare_shared("words", 32, false);         // the 32 words of the mask whose lights are staged
+    writer.declare_shared("lights_in", 8, false);      // how many lights each of these words has, a byte each
+    writer.declare_shared("staged", 1024, false);      // ids less the first one, and tiles_met() in the upper 16 bits
+    writer.declare_shared("column_bits", 256, false);  // bits of the lights in a column: 8 words for each 32 lights
+    writer.declare_shared("row_bits", 256, false);     // the same for rows
+}
+
+/// Adds `stage`, with which a group stages the lights of 32 words of a mask block, from word `first` on, and finds
+/// those in each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill;
+/// bits beyond the last light are 0.
+inline void add_stage(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.add(R"(
+uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
+    if (thread < 8u) {
+        uint mask_blocks = $blocks.x * $blocks.y * )" + std::string(cull_layers(options)) + R"(;
+        uint word_count = (($segments.x + 63u) >> 6u) * 2u;
+        uint counts = 0u;
+        for (uint i = 0u; i < 4u; i += 1u) {
+            uint own = 0u;
+            uint word = first + thread * 4u + i;
+            if (word < word_count) { own = $scratch[$places.x + word * mask_blocks + mask_block]; }
+            $words[thread * 4u + i] = own;
+            counts |= uint(bitCount(own)) << (i * 8u);
+        }
+        $lights_in[thread] = counts;
+    }
+    sync_group();
+    uint word = thread >> 1u;
+    uint bits = $words[word];
+    uint at = 0u;
+    if ((thread & 1u) == 0u) { bits &= 0xffffu; }
+    else {
+        at = uint(bitCount(bits & 0xffffu));
+        bits &= 0xffff0000u;
+    }
+    // The product with 0x1010101 has the sum of the four bytes in its upper byte.
+    uint lights = 0u;
+    for (uint quad = 0u; quad < 8u; quad += 1u) {
+        uint counts = $lights_in[quad];
+        uint before = 0u;
+        if (quad < (word >> 2u)) { before = counts; }
+        if (quad == word >> 2u) { before = counts & ((1u << ((word & 3u) * 8u)) - 1u); }
+        lights += (counts * 0x1010101u) >> 24u;
+        at += (before * 0x1010101u) >> 24u;
+    }
+    while (bits != 0u) {
+        uint light = word * 32u + uint(findLSB(bits));
+        bits &= bits - 1u;
+        uint record = )" + cull_record_of(options, "(first * 32u + light)") + R"(;
+        $staged[at] = light | ($tiles_met(record, corner, slice) << 16u);
+        at += 1u;
+    }
+    sync_group();
+    uint filled = (lights + 31u) >> 5u;
+    for (uint slot = thread; slot < filled * 8u; slot += 64u) {
+        uint begin = (slot >> 3u) * 32u;
+        uint end = min(begin + 32u, lights);
+        uint in_column = 0u;
+        uint in_row = 0u;
+        for (uint next = begin; next < end; next += 1u) {
+            uint tiles = $staged[next] >> (16u + (slot & 7u));
+            in_column |= (tiles & 1u) << (next & 31u);
+            in_row |= ((tiles >> 8u) & 1u) << (next & 31u);
+        }
+        $column_bits[slot] = in_column;
+        $row_bits[slot] = in_row;
+    }
+    sync_group();
+    return filled;
+}
+)");
+}
+
+/// Returns the shader's lines that find the cell's depths and box. `drawn` is false if the cell is outside of the grid
+/// or its Z bounds are empty.
+inline std::string cull_cell(const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    if (!options.depth_test) return "    bool drawn = inside;\n";
+    return std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
+           (clusters ? "slice" : "cell") + "); }\n    bool drawn = inside && z.x <= z.y;\n" +
+           // lights that are tested end before the depth 2^42
+           "    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, " +
+           (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
+    vec2 columns = vec2(0.0, 0.0);
+    vec2 rows = vec2(0.0, 0.0);
+    if (drawn) {
+        uint sides = )" + (clusters ? "$grid.z" : "$grid.x * $grid.y") + R"(;
+        columns = $across($z_bounds[sides + tile.x], z);
+        rows = $across($z_bounds[sides + $grid.x + tile.y], z);
+    }
+)";
+}
+
+/// Adds `store_id`, which writes an id to the lists. Ids of 16 bits share words, also with the lists before and
+/// after: `half` changes its own half of a word and no other, so it makes no difference which half is written
+/// first.
+inline void add_store_id(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.add(options.ids == IdWidth::u32
+                   ? "\nvoid $store_id(uint at, uint id) {\n    if (at < $grid.w) { $lists[at] = id; }\n}\n"
+                   : R"(
+void $store_id(uint at, uint id) {
+    if (at < $grid.w) {
+        uint word = at >> 1u;
+        uint shift = (at & 1u) * 16u;
+        atomicAnd(&$lists[word], ~(0xffffu << shift));
+        atomicOr(&$lists[word], id << shift);
+    }
+}
+)");
+}
+
+/// Adds the pass count or fill.
+inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bool fill) {
+    const bool clusters = options.slicing == Slicing::clusters, depths = options.depth_test,
+               narrow = options.ids == IdWidth::u16;
+    if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    declare_scratch(writer, options);
+    if (fill) {
+        writer.declare_storage("tiles", "uvec2", "writeonly", options.tiles, 8);
+        writer.declare_storage("lists", narrow && writer.dialect.webgpu ? "atomic<uint>" : "uint",
+                               narrow ? "" : "writeonly", options.lists, 4);
+    }
+    writer.add("\n");
+    declare_stage(writer);
+    if (depths) {
+        add_cell_depths(writer, options);
+        add_cell_box(writer, options);
+    }
+    add_tiles_met(writer, options);
+    add_stage(writer, options);
+    if (fill) {
+        add_saturated_sum(writer);
+        add_store_id(writer, options);
+    }
+    const std::string layer_count = clusters ? "$grid.z" : "1u";
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint number = group.y * 32768u + group.x;
+    uint block_columns = ($grid.x + 7u) >> 3u;
+    uint block_plane = block_columns * (($grid.y + 7u) >> 3u);
+    uint block = number % max(block_plane * )" + layer_count + R"(, 1u);
+    uint segment = number / max(block_plane * )" + layer_count + R"(, 1u);
+    uint slice = block / max(block_plane, 1u);
+    block %= max(block_plane, 1u);
+    uvec2 corner = uvec2(block % max(block_columns, 1u), block / max(block_columns, 1u)) * 8u;
+    uvec2 tile = corner + uvec2(thread & 7u, thread >> 3u);
+    bool inside = segment < $segments.y && tile.x < $grid.x && tile.y < $grid.y;
+    uint cells = $grid.x * $grid.y * )" + layer_count + R"(;
+    uint cell = (slice * $grid.y + tile.y) * $grid.x + tile.x;
+    uint mask_block = ((slice >> $blocks.w) * $blocks.y + (corner.y >> $blocks.z)) * $blocks.x;
+    mask_block += corner.x >> $blocks.z;
+)" + cull_cell(options));
+    if (fill)
+        writer.add(R"(    uint at = 0u;
+    if (inside) {
+        uint range = $places.z + 2u * cell;
+        uint count = $scratch[range + 1u];
+        uint base = $sum($scratch[range], $scratch[$places.w + (cell >> 7u)]);
+        uint begin = min(base, $grid.w);
+        if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }
+        at = $sum(base, $scratch[$places.y + segment * cells + cell]);
+    }
+)");
+    else
+        writer.add("    uint count = 0u;\n");
+    writer.add(R"(    for (uint step = 0u; step < $segments.z; step += 1u) {
+        uint first = (segment * $segments.z + step) * 32u;
+        uint staged_words = $stage(first, mask_block, corner, slice, thread);
+        for (uint i = 0u; i < staged_words; i += 1u) {
+            uint met = $column_bits[i * 8u + (thread & 7u)] & $row_bits[i * 8u + (thread >> 3u)];
+            if (!drawn) { met = 0u; }
+)" + (fill || depths ? R"(            while (met != 0u) {
+                uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);
+                met &= met - 1u;
+)" + (depths ? "                if (!$meets_box(" + cull_record_of(options, "id") +
+                   (options.slicing == Slicing::none ? " + 2u" : " + 3u") + ", columns, rows, z)) { continue; }\n"
+                       : std::string()) +
+               (fill ? "                $store_id(at, id);\n                at = $sum(at, 1u);\n"
+                     : "                count += 1u;\n") + "            }\n"
+                             : std::string("            count += uint(bitCount(met));\n")) +
+               "        }\n    }\n");
+    if (!fill) writer.add("    if (inside) { $scratch[$places.y + segment * cells + cell] = count; }\n");
+    writer.add("}\n");
+}
+
+/// Adds `scan`, a prefix sum over the 128 numbers of a group, in `partial` (Hillis, Steele, "Data Parallel Algorithms",
+/// 1986).
+inline void add_scan(ShaderWriter& writer) {
+    writer.declare_shared("partial", 128, false);
+    add_saturated_sum(writer);
+    writer.add(R"(
+// Adds to each invocation's number those of the invocations before it.
+void $scan(uint thread, uint own) {
+    $partial[thread] = own;
+    sync_group();
+    for (uint distance = 1u; distance < 128u; distance *= 2u) {
+        uint before = 0u;
+        if (thread >= distance) { before = $partial[thread - distance]; }
+        sync_group();
+        $partial[thread] = $sum($partial[thread], before);
+        sync_group();
+    }
+}
+)");
+}
+
+/// Adds the pass sums: an invocation adds up the counts of a cell's segments, and a group those of 128 cells.
+inline void add_sums(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    add_scan(writer);
+    writer.add(std::string(R"(
+void $run(uvec2 group, uint thread) {
+    uint number = group.y * 32768u + group.x;
+    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint cell = number * 128u + thread;
+    uint count = 0u;
+    if (cell < cells) {
+        for (uint i = 0u; i < $segments.y; i += 1u) {
+            uint at = $places.y + i * cells + cell;
+            uint own = $scratch[at];
+            $scratch[at] = count;
+            count += own;
+        }
+    }
+    $scan(thread, count);
+    if (cell < cells) {
+        uint before = 0u;
+        if (thread > 0u) { before = $partial[thread - 1u]; }
+        $scratch[$places.z + 2u * cell] = before;
+        $scratch[$places.z + 2u * cell + 1u] = count;
+    }
+    if (thread == 127u && number * 128u < cells) { $scratch[$places.w + number] = $partial[127]; }
+}
+)");
+}
+
+/// Writes the shader function `total_lights`, with which a single work group stores CullTotals::rejected and ::visible.
+/// For each 64 lights, the pass `project` left a word with the number of rejected lights in its low 16 bits, and the
+/// number of lights in view in its high 16 bits.
+inline void add_total_lights(ShaderWriter& writer) {
+    add_scan(writer);
+    writer.add(R"(
+void $total_lights(uint thread) {
+    uint groups = ($segments.x + 63u) >> 6u;
+    for (uint shift = 0u; shift < 32u; shift += 16u) {
+        uint own = 0u;
+        for (uint i = thread; i < groups; i += 128u) { own += ($scratch[$segments.w + i] >> shift) & 0xffffu; }
+        $scan(thread, own);
+        if (thread == 127u) { $scratch[1u + (shift >> 4u)] = $partial[thread]; }
+    }
+}
+)");
+}
+
+/// Writes the text of the pass `offsets`, in which a single work group adds up the sums that the work groups of the
+/// pass `sums` left in `scratch`, and stores CullTotals.
+inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    add_total_lights(writer);
+    writer.add(std::string(R"(
+void $run(uvec2 group, uint thread) {
+    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint sums = (cells + 127u) >> 7u;
+    uint before = 0u;
+    for (uint first = 0u; first < sums; first += 128u) {
+        uint at = $places.w + first + thread;
+        uint own = 0u;
+        if (first + thread < sums) { own = $scratch[at]; }
+        $scan(thread, own);
+        uint base = before;
+        if (thread > 0u) { base = $sum(base, $partial[thread - 1u]); }
+        if (first + thread < sums) { $scratch[at] = base; }
+        before = $sum(before, $partial[127]);
+        sync_group();
+    }
+    $total_lights(thread);
+    if (thread == 0u) { $scratch[0] = before; }
+}
+)");
+}
+
+}}}  // namespace lightbin::detail

@@ -1,0 +1,457 @@
+// SPDX-License-Identifier: MIT
+// How shader_snippet() makes the text that reads the lists, and shader_slices() the table of slices that it looks up.
+#pragma once
+
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/shaders/writer.hpp>
+#include <lightbin/list_format.hpp>
+#include <lightbin/shader.hpp>
+
+#include <array>
+#include <limits>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+/// Returns the coefficients a, b, c of an estimate of a depth's slice, a * log2(depth) + b * depth + c. It is the line
+/// through the first and the last boundary over depth or over its logarithm, whichever is nearer to the other
+/// boundaries; for Slices::linear() and exponential() it is exact but for rounding.
+inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
+    std::array<float, 3> best = {0, 0, 0};
+    if (boundaries.empty()) return best;
+    double least_error = std::numeric_limits<double>::infinity();
+    for (const bool by_log2 : {false, true}) {
+        const auto scaled = [&](float depth) {
+            return by_log2 ? std::log2(static_cast<double>(depth)) : static_cast<double>(depth);
+        };
+        const double first = scaled(boundaries.front()), last = scaled(boundaries.back()),
+                     steps = static_cast<double>(boundaries.size()) - 1;
+        const double slope = !(steps > 0) ? 0 : steps / (last - first), offset = 1 - slope * first;
+        double error = 0, index = 0;
+        for (const float boundary : boundaries)
+            error += std::fabs(slope * scaled(boundary) + offset - ++index);
+        if (!(error < least_error)) continue;  // also when NaN: depths of 0 or less have no logarithm
+        least_error = error;
+        const float factor = static_cast<float>(slope);
+        best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
+    }
+    return best;
+}
+
+}  // namespace detail
+
+inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
+    const std::span<const float> boundaries = slices.boundaries();
+    std::vector<std::uint32_t> words;
+    for (const float coefficient : detail::slice_estimate(boundaries))
+        words.push_back(detail::bit_cast<std::uint32_t>(coefficient));
+    words.push_back(static_cast<std::uint32_t>(boundaries.size()));
+    for (const float boundary : boundaries) {
+        const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        words.push_back(bits & sign ? ~bits : bits | sign);
+    }
+    return words;
+}
+
+inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
+    using namespace detail;
+    ShaderWriter writer(options.language, options.prefix);
+    const Dialect& dialect = writer.dialect;
+    const ListFormat& format = options.format;
+    const bool textures = options.storage == ListStorage::texture_2d;
+    const bool masks = options.masks;
+    // Every device allows a uniform block of 16384 bytes. It holds the constants of `check_view` for so many views.
+    const std::uint32_t max_views = masks ? 1 : 16384 / sizeof(ShaderView);
+    if (const auto error = refuse_common(
+            options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
+            {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,
+              {ErrorCode::no_storage_buffers}},
+             {options.storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu),
+              {ErrorCode::no_texel_buffers}},
+             {options.storage == ListStorage::byte_address && !dialect.hlsl, {ErrorCode::no_byte_address_buffers}},
+             {options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
+              {ErrorCode::no_wave_operations}},
+             {options.views < 1 || options.views > max_views,
+              {ErrorCode::views_out_of_range, options.views, max_views}},
+             {masks && options.slicing == Slicing::clusters, {ErrorCode::no_such_slicing_shader}},
+             {options.tile_size < 0,
+              {ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)}},
+             {textures && (options.texture_width < 1 || options.texture_width > 16384),
+              {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
+        return *error;
+    if (!masks)
+        if (const auto error = refuse(format)) return *error;
+    // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
+    const std::uint64_t limit =
+        options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
+    using enum ShaderResource;
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
+                                             byte_address};
+    const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
+    const bool table = !masks && format.encoding == ListEncoding::offset_count;
+    // In buffer textures and textures each id has a texel unless ids are packed.
+    const bool one_id = !options.packed_ids && (resource == texel_buffer || textures);
+    const TexelFormat texel = one_id && format.ids == IdWidth::u8    ? TexelFormat::r8ui
+                              : one_id && format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                                     : TexelFormat::r32ui;
+    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
+    const std::uint32_t width = textures ? options.texture_width : 0;
+    // With several views, functions that read a view's lists or constants take the view's number as last parameter.
+    const bool several = options.views > 1;
+    const std::string view_parameter = several ? ", uint view" : "", view_argument = several ? ", view" : "",
+                      is_view = several ? " && view < " + std::to_string(options.views) + "u" : "";
+    const std::string of_list = "(uvec2 pixel, float view_depth" + view_parameter + ") {\n",
+                      list_arguments = "(pixel, view_depth" + view_argument + ")";
+    std::vector<ShaderBuffer> buffers;
+    if (table)
+        buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
+                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
+    if (masks)
+        buffers.push_back({"masks", resource, options.lists, TexelFormat::r32ui, limit, width});
+    else
+        buffers.push_back({"lists", resource, options.lists, texel,
+                           encoded_bytes(format, options.max_tiles, options.max_entries), width});
+    if (sliced)
+        buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
+                           options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
+    if (binned && !masks)
+        buffers.push_back({"bins", resource, options.bins, TexelFormat::rg32ui,
+                           8ull * options.max_slices * options.views, width});
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == uniform_block && buffer.bytes == 0)
+            return Error{ErrorCode::block_size_unknown};
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == uniform_block && buffer.bytes > limit)
+            return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
+
+    // The loop ends for all lanes of a wave at once. WGSL compilers can't prove that, and would refuse subgroupMin.
+    if (options.wave_loop && dialect.webgpu)
+        writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
+    else if (options.wave_loop && !dialect.hlsl)
+        writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
+    if (options.view_check && several)
+        writer.declare_constants({{"vec4", "image"}}, options.view, false, 2 * options.views);
+    else if (options.view_check)
+        writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
+    for (const ShaderBuffer& buffer : buffers)
+        writer.declare(buffer);
+
+    // Lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of or
+    // above the viewport wraps around to a large unsigned number, and so stays outside.
+    const std::string here = std::string("    uvec2 here = pixel") +
+                             (options.viewport_corner ? " - uvec2($corner);\n" : ";\n") +
+                             (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
+    // The shader function `tile` divides by at least 1: until the program sets `grid`, the tile size in it is 0.
+    const bool fixed = options.tile_size != 0;
+    const std::string size = fixed ? std::to_string(options.tile_size) + "u" : "$grid.x";
+    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + here + "    return here / " +
+               (fixed ? size : "max(" + size + ", 1u)") + ";\n}\n");
+    // `slice` returns the slice of a view depth. It starts from the estimate, in which a device may round the logarithm
+    // as it likes, and steps from there until the boundaries enclose the depth. They are compared as integers in the
+    // same order as the floats, because devices may flush denormal floats to zero.
+    if (sliced)
+        writer.add("\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = "
+                   "uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + "
+                   "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u]);" R"(
+    uint last = $slices[3u];
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = bits | 0x80000000u;
+    if (bits > 0x80000000u) { key = ~bits; }
+    while (slice > 0u && key < $slices[slice + 3u]) { slice -= 1u; }
+    while (slice < last && key >= $slices[slice + 4u]) { slice += 1u; }
+    return slice;
+}
+)");
+
+    // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
+    if (!masks)
+        writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
+                   (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
+                    : format.ids == IdWidth::u16         ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
+                                                         : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
+                   ";\n}\n");
+
+    // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
+    // nothing: the constants may be unset, or describe a smaller image or other tiles.
+    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    if (masks)
+        writer.add("    uint bits;\n    uvec2 masks;\n    uint ids;\n" + std::string(binned ? "    uvec2 bin;\n" : ""));
+    else if (binned)
+        writer.add("    uint last;\n");
+    writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
+               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n    c.id = 0u;\n");
+    if (masks)
+        writer.add("    c.bits = 0u;\n    c.masks = uvec2(0u, 0u);\n    c.ids = 0u;\n" +
+                   std::string(binned ? "    c.bin = uvec2(0u, 0u);\n" : ""));
+    else if (binned)
+        writer.add("    c.last = 0u;\n");
+    writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
+               is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
+    if (sliced) writer.add("        uint slice = $slice(view_depth);\n");
+    // The cells of a view, and its bins, lie behind those of the views before it.
+    if (sliced && several) writer.add("        slice += view * ($slices[3u] + 1u);\n");
+    const bool clusters = sliced && !binned;
+    if (clusters || several)
+        writer.add(std::string("        tile.y += ") + (clusters ? "slice" : "view") +
+                   " * (($grid.w - 1u) / " + size + " + 1u);\n");
+    if (binned && !masks) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
+    if (!masks) writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
+    // Of masks, `at` and `end` are words, and `masks` is where those of the column and the row begin: see
+    // LightMasks::words(). A bin without lights is {1, 0}, of which no bit is left.
+    if (masks)
+        writer.add("        uint words = $masks[0u];\n"
+                   "        c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);\n"
+                   "        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / " + size + ") * words;\n" +
+                   std::string(binned ? R"(        uint bin = c.ids + 32u * words + 2u * slice;
+        c.bin = uvec2($masks[bin], $masks[bin + 1u]);
+        c.at = c.bin.x >> 5u;
+        c.end = (c.bin.y >> 5u) + 1u;
+)"
+                                      : "        c.end = words;\n"));
+    else if (table)
+        writer.add("        uvec2 list = " +
+                   (textures && !options.tiles_in_uniform_block
+                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
+                        : "$tiles[place]") +
+                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
+    else {
+        const std::string each = std::to_string(format.capacity) + "u";
+        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " + each + ";\n");
+    }
+    // With z-bins ids are ranks, the places of the lights in order of depth. The cursor skips the ids below the bin's
+    // least rank: in a list of known length by binary search, in one that a sentinel ends by linear search.
+    if (binned && table)
+        writer.add(R"(        uint end = c.end;
+        while (c.at < end) {
+            uint middle = c.at + ((end - c.at) >> 1u);
+            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
+            else { end = middle; }
+        }
+)");
+    else if (binned && !masks)
+        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
+
+    // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
+    // result that was not set where a function returns early.
+    writer.add("    }\n    return c;\n}\n");
+    // The next light of masks. Without findLSB the exponent of the lowest bit, converted to float, is its index.
+    const std::string next_bit = R"(    bool more = c.bits != 0u;
+    if (more) {
+        uint bit = )" + std::string(dialect.storage_buffers
+                                        ? "uint(findLSB(c.bits))"
+                                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                                 R"(;
+        c.bits &= c.bits - 1u;
+        c.id = $masks[c.ids + 32u * (c.at - 1u) + bit];
+)";
+    // `lights_at` returns the bits of the word that a cursor is at; with z-bins only those of the bin's range.
+    if (masks)
+        writer.add("\nuint $lights_at($own_cursor c) {\n"
+                   "    uint bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];\n" +
+                   std::string(binned ? R"(    if (c.at == c.bin.x >> 5u) { bits &= 0xffffffffu << (c.bin.x & 31u); }
+    if (c.at == c.bin.y >> 5u) { bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }
+)"
+                                      : "") +
+                   "    return bits;\n}\n");
+    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
+    if (masks)
+        writer.add(R"(    while (c.bits == 0u && c.at < c.end) {
+        c.bits = $lights_at(c);
+        c.at += 1u;
+    }
+)" + next_bit);
+    else
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
+                   "        c.at += 1u;\n");
+    if (!table && !masks)
+        writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
+    if (binned && !masks) writer.add("        more = more && c.id <= c.last;\n");
+    writer.add("    }\n    return more;\n}\n");
+
+    // The cursor of a wave goes with all its lanes through the words that any of them looks at, and through the lights
+    // that any of them has there.
+    if (options.wave_loop && masks)
+        writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    uint at;
+    uint end;
+    uint bits;
+    uint ids;
+    $own_cursor lane;
+};
+
+$cursor $begin)" + of_list + R"(    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    c.bits = 0u;
+    $own_cursor lane = $own_begin)" + list_arguments + R"(;
+    c.lane = lane;
+    uint first = 0xffffffffu;
+    if (lane.at < lane.end) { first = lane.at; }
+    c.at = subgroupMin(first);
+    c.end = subgroupMax(lane.end);
+    c.ids = subgroupMax(lane.ids);
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor lane = c.lane;
+    while (c.bits == 0u && c.at < c.end) {
+        lane.bits = 0u;
+        if (c.at == lane.at && lane.at < lane.end) {
+            lane.bits = $lights_at(lane);
+            lane.at += 1u;
+        }
+        c.bits = subgroupOr(lane.bits);
+        c.at += 1u;
+    }
+    c.lane = lane;
+)" + next_bit + R"(        c.own = ((lane.bits >> bit) & 1u) != 0u;
+    }
+    return more;
+}
+)");
+    // The wave's next light in lists is the least id among the next lights of its lanes.
+    else if (options.wave_loop)
+        writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    bool more;
+    $own_cursor ahead;
+};
+
+$cursor $begin)" + of_list + R"(    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    $own_cursor ahead = $own_begin)" + list_arguments + R"(;
+    c.more = $own_next(&ahead);
+    c.ahead = ahead;
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor ahead = c.ahead;
+    if (c.own) { c.more = $own_next(&ahead); }
+    c.ahead = ahead;
+    uint own = 0xffffffffu;
+    if (c.more) { own = ahead.id; }
+    c.id = subgroupMin(own);
+    c.own = c.more && own == c.id;
+    return c.id != 0xffffffffu;
+}
+)");
+    if (!dialect.webgpu)
+        writer.add("\n#define $for_each_light(cursor, pixel, view_depth" + view_argument +
+                   ") for ($cursor cursor = $begin" + list_arguments +
+                   (options.wave_loop ? "; $next(cursor);) if (cursor.own)\n" : "; $next(cursor);)\n"));
+    if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
+        writer.add("\nuint $count" + of_list + "    $own_cursor c = $own_begin" + list_arguments + ";\n" +
+                   std::string(table && !binned ? "    return c.end - c.at;\n"
+                                                : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
+                                                  "    return count;\n") +
+                   "}\n\nvec3 $heat(uvec2 pixel, float view_depth, float most" + view_parameter +
+                   ") {\n    float heat = float($count" + list_arguments + R"() / most;
+    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
+    return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
+}
+)");
+    if (options.window)  // the shader's light_window()
+        writer.add(R"(
+// 1 at a light, falling smoothly to 0 at its range and beyond.
+float $window(float apart, float range) {
+    float x = apart / range;
+    float w = 0.0;
+    if (apart < range) { w = 1.0 - x * x * x * x; }
+    return w * w;
+}
+)");
+    if (options.view_check) {
+        std::string check = R"(    float depth = $depths.x * position.z;
+    float w = 1.0;
+    if ($depths.y > 0.0) { w = depth; }
+    vec2 at = $image.xy * position.xy / w + $image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z)" +
+                            is_view + ";\n}\n";
+        // The constants of view v are elements 2v and 2v + 1 of an array. A view number that is too large is clamped to the
+        // last view's, so that no element beyond the array is read.
+        if (several)
+            check = "    uint first = 2u * min(view, " + std::to_string(options.views - 1) +
+                    "u);\n    vec4 image = $image[first];\n    vec4 depths = $image[first + 1u];\n" +
+                    replaced(replaced(check, "$image", "image"), "$depths", "depths");
+        writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+                   "bool $check_view(uvec2 pixel, vec3 position" + view_parameter + ") {\n" + here + check);
+    }
+    // As a list's ids ascend, one pass over all ids, with the list's cursor beside it, finds those that the list lacks.
+    // Masks with z-bins have an order of their own, and are searched for each id.
+    if (options.list_check && masks && binned)
+        writer.add(R"(
+// A light, and whether the pixel's masks lack it.
+struct $missing {
+    uint id;
+    bool lacked;
+    $own_cursor first;
+};
+
+$missing $begin_missing)" + of_list + R"(    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.first = $own_begin)" + list_arguments + R"(;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.first;
+    bool more = $own_next(&listed);
+    while (more && listed.id != m.id) { more = $own_next(&listed); }
+    m.lacked = !more;
+    return m.id < lights;
+}
+)");
+    else if (options.list_check)
+        writer.add(R"(
+// A light, and whether the pixel's list lacks it.
+struct $missing {
+    uint id;
+    bool lacked;
+    bool more;
+    $own_cursor listed;
+};
+
+$missing $begin_missing)" + of_list + R"(    $own_cursor listed = $own_begin)" + list_arguments + R"(;
+    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.more = $own_next(&listed);
+    m.listed = listed;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.listed;
+    m.lacked = !(m.more && listed.id == m.id);
+    if (!m.lacked) { m.more = $own_next(&listed); }
+    m.listed = listed;
+    return m.id < lights;
+}
+)");
+    if (options.list_check && !dialect.webgpu)
+        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth" + view_argument +
+                   ") for ($missing cursor = $begin_missing" + list_arguments +
+                   "; $next_missing(cursor, lights);) if (cursor.lacked)\n");
+    // In the text, names of what reads the list of one lane begin with `$own_`, where `$` is the prefix of all names.
+    // With wave_loop this tells them from those of the loop that a wave shares. Without wave_loop `own_` is left out.
+    return writer.finish(options.wave_loop ? "$own_" : "$");
+}
+
+}}  // namespace lightbin

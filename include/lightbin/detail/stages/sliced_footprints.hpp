@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// The slicing stage, between projection and binning: finds the footprints in each depth slice, for clusters.
+#pragma once
+
+#include <lightbin/detail/stages/footprints.hpp>
+#include <lightbin/slices.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+/// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused between calls.
+class SlicedFootprints {
+public:
+    /// Puts each footprint in the slices that its light's view depths meet, ends included: those of a sphere, z +- r,
+    /// widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
+    ///
+    /// kernel  find_depth_buckets() for the lights' kind
+    std::optional<Error> order(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
+                               const Slices& slices) {
+        constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
+        const detail::FootprintArrays& lights = footprints.arrays();
+        table_ = &table_of(slices);
+        run_count_ = static_cast<std::size_t>(slices.count());
+        const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
+        if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
+        const std::uint64_t size = find_slices(kernel, view, footprints);
+        if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
+        arrays_ = buffers_.reserve(size);
+        arrays_.view_lights = lights.view_lights;
+        const SliceRange* met = met_.data();
+        for (const detail::FootprintRun& run : footprints.runs())
+            for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
+                const std::uint64_t area =
+                    (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
+                // Most lights meet one or two slices. These are written without a branch, which would be mispredicted.
+                const std::uint32_t more = met->first < met->last;
+                put(lights, i, area, met->first, 1);
+                put(lights, i, area * more, met->first + 1, more);
+                for (std::uint32_t slice = met->first + 2; slice <= met->last; ++slice)
+                    put(lights, i, area, slice, 1);
+            }
+        return {};
+    }
+
+    std::size_t slices() const { return run_count_; }
+    detail::FootprintSlice slice(std::size_t i) const {
+        const SliceRun& run = runs_.data()[i];
+        return {arrays_,
+                {static_cast<const detail::FootprintRun*>(&run), 1},
+                run.end - run.begin,
+                run.area,
+                {i == 0 ? -detail::infinity : table_->nearer(table_->boundaries()[i - 1]),
+                 i + 1 == run_count_ ? detail::infinity : table_->farther(table_->boundaries()[i])}};
+    }
+
+private:
+    /// The slices first..last that a light meets.
+    struct SliceRange {
+        std::uint32_t first, last;
+    };
+    /// The footprints in one slice, and the number of tiles in their rectangles.
+    struct SliceRun : detail::FootprintRun {
+        std::uint64_t area;
+    };
+
+    /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. One unused element
+    /// follows the footprints of each slice, as put() may write there. Returns the number of elements of each array.
+    std::uint64_t find_slices(detail::DepthBucketsKernel kernel, const View& view, const Footprints& footprints) {
+        SliceRun* const runs = runs_.reserve(run_count_ + 1);
+        detail::fill_items(runs, run_count_ + 1, {});
+        SliceRange* met = met_.reserve(footprints.visible());
+        const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
+            *met++ = {first, last};
+            // A difference array of the number of lights per slice, whose prefix sums are taken below. Its unsigned
+            // elements wrap, and the sums come out right.
+            ++runs[first].end;
+            --runs[last + 1].end;
+        };
+        table_->find(kernel, false, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
+        std::uint64_t size = 0;
+        std::uint32_t count = 0;
+        for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
+            count += run->end;
+            run->begin = run->end = static_cast<std::uint32_t>(size);
+            size += count + std::uint64_t{1};
+        }
+        return size;
+    }
+
+    /// Appends footprint i, whose rectangle has `area` tiles, to a slice if `count` is 1. If `count` and `area` are 0,
+    /// it appends nothing, without a branch: what it writes, the slice's next footprint overwrites.
+    void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
+             std::uint32_t count) {
+        SliceRun& run = runs_.data()[slice];
+        const std::uint32_t to = run.end;
+        run.end += count;
+        run.area += area;
+        arrays_.ids[to] = lights.ids[i];
+        arrays_.x0[to] = lights.x0[i];
+        arrays_.y0[to] = lights.y0[i];
+        arrays_.x1[to] = lights.x1[i];
+        arrays_.y1[to] = lights.y1[i];
+    }
+
+    const detail::SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
+    detail::Buffer<SliceRange> met_;             ///< for each footprint, the slices that its light meets
+    /// Each slice's run of footprints, and one element more: find_slices() first makes a difference array of them.
+    detail::Buffer<SliceRun> runs_;
+    detail::FootprintBuffers buffers_;
+    detail::FootprintArrays arrays_ = {};
+    std::size_t run_count_ = 0;
+};
+
+}}  // namespace lightbin

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Reduces rows of depth samples to the extreme samples of each tile.
+#pragma once
+
+#include <lightbin/detail/dispatch/kernels.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The least and the greatest of some numbers; lower > upper if there are no numbers.
+struct Extremes {
+    float lower = infinity, upper = -infinity;
+
+    void take(float low, float high) {
+        lower = min_of(lower, low);
+        upper = max_of(upper, high);
+    }
+};
+
+/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. Each range goes to one of four
+/// Extremes in turn, so that the processor overlaps their minima and maxima, which do not depend on each other.
+inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
+    Extremes chains[4] = {so_far, so_far, so_far, so_far};
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (std::size_t chain = 0; chain < 4; ++chain)
+            chains[chain].take(lower[i + chain], upper[i + chain]);
+    for (; i < count; ++i)
+        chains[0].take(lower[i], upper[i]);
+    for (std::size_t chain = 1; chain < 4; ++chain)
+        chains[0].take(chains[chain].lower, chains[chain].upper);
+    return chains[0];
+}
+
+/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of
+/// samples to its extremes, as many columns as fit in a buffer on the stack; then each tile's columns are reduced.
+///
+/// tile_columns  samples across a tile
+/// skipped       samples of this value are left out; NaN: none are
+template <class Finish>
+void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped, Finish finish) {
+    constexpr std::size_t buffer_size = 512;
+    const std::size_t block = tile_columns < buffer_size ? buffer_size / tile_columns * tile_columns : buffer_size;
+    float lower[buffer_size], upper[buffer_size];
+    Extremes tile;
+    for (std::size_t first = 0; first < row.columns; first += block) {
+        const std::size_t end = min_of(first + block, row.columns);
+        const DepthRows part = {row.samples + first, row.pitch, row.rows, end - first};
+        depth_kernel(isa, part.columns)(part, skipped, lower, upper);
+        for (std::size_t column = first; column < end;) {
+            const std::size_t index = column / tile_columns;
+            const std::size_t tile_end = min_of((index + 1) * tile_columns, row.columns);
+            const std::size_t stop = min_of(tile_end, end);
+            tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
+            if (stop == tile_end) {
+                finish(index, tile);
+                tile = {};
+            }
+            column = stop;
+        }
+    }
+}
+
+}}}  // namespace lightbin::detail

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// The tier of 512-bit vectors, which hold sixteen lights: AVX-512 with the compress instructions of VBMI2, and BITALG,
+// which Ice Lake, Zen 4 and later processors have.
+#pragma once
+
+#include <lightbin/detail/base/bits.hpp>
+#include <lightbin/sphere.hpp>
+
+#if defined(LIGHTBIN_X86)
+
+#include <immintrin.h>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+// The region of the tier, which is entered once more for its kernels. GCC 12's own AVX-512 header causes two warnings,
+// by values that it leaves undefined on purpose.
+#if defined(__GNUC__) && !defined(__clang__)
+#define LIGHTBIN_AVX512_WARNINGS_OFF                                                                   \
+    LIGHTBIN_PRAGMA(GCC diagnostic push) LIGHTBIN_PRAGMA(GCC diagnostic ignored "-Wuninitialized")     \
+    LIGHTBIN_PRAGMA(GCC diagnostic ignored "-Wmaybe-uninitialized")
+#define LIGHTBIN_AVX512_WARNINGS_ON LIGHTBIN_PRAGMA(GCC diagnostic pop)
+#else
+#define LIGHTBIN_AVX512_WARNINGS_OFF
+#define LIGHTBIN_AVX512_WARNINGS_ON
+#endif
+#define LIGHTBIN_AVX512_BEGIN    \
+    LIGHTBIN_AVX512_WARNINGS_OFF \
+    LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")
+#define LIGHTBIN_AVX512_END LIGHTBIN_TARGET_END LIGHTBIN_AVX512_WARNINGS_ON
+
+LIGHTBIN_AVX512_BEGIN
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
+
+using FloatRegister = __m512;
+inline constexpr std::uint32_t lanes = 16;
+
+inline __m512 load_each_fourth(const char* from, std::size_t stride) {
+    const auto vec4 = [=](std::size_t i) { return _mm_loadu_ps(reinterpret_cast<const float*>(from + i * stride)); };
+    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
+}
+inline void store_each_fourth(char* to, std::size_t stride, __m512 quads) {
+    const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
+    _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));
+    _mm_storeu_ps(vec4(4), _mm512_extractf32x4_ps(quads, 1));
+    _mm_storeu_ps(vec4(8), _mm512_extractf32x4_ps(quads, 2));
+    _mm_storeu_ps(vec4(12), _mm512_extractf32x4_ps(quads, 3));
+}
+
+#define LIGHTBIN_LESS(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ)
+#define LIGHTBIN_LESS_EQUAL(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
+#define LIGHTBIN_MASK __mmask16
+#define LIGHTBIN_OP(name) _mm512_##name##_ps
+#include <lightbin/detail/vectors/x86_vector.inl>
+
+inline unsigned movemask(unsigned mask) {
+    return mask;
+}
+
+/// Transposes a vector as 4x4 floats: lane 4 i + j becomes lane 4 j + i.
+inline Floats swap_quarters(Floats a) {
+    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
+}
+
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
+    x = _mm512_loadu_ps(&spheres[0].x);
+    y = _mm512_loadu_ps(&spheres[4].x);
+    z = _mm512_loadu_ps(&spheres[8].x);
+    radius = _mm512_loadu_ps(&spheres[12].x);
+    transpose(x, y, z, radius);
+    x = swap_quarters(x);
+    y = swap_quarters(y);
+    z = swap_quarters(z);
+    radius = swap_quarters(radius);
+}
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
+    transpose(a, b, c, d);
+    _mm512_storeu_ps(&spheres[0].x, a);
+    _mm512_storeu_ps(&spheres[4].x, b);
+    _mm512_storeu_ps(&spheres[8].x, c);
+    _mm512_storeu_ps(&spheres[12].x, d);
+}
+
+/// As in common.inl. A vector would have to wait for the stores of the spheres that are copied there to memory for it.
+template <class Index>
+void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
+                         Floats& radius) {
+    const auto one = [=](std::uint32_t i) { return _mm_loadu_ps(&spheres[indices[i]].x); };
+    const auto four = [=](std::uint32_t i) {
+        const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(one(i)), one(i + 4), 1);
+        return _mm512_insertf32x4(_mm512_insertf32x4(two, one(i + 8), 2), one(i + 12), 3);
+    };
+    x = four(0);
+    y = four(1);
+    z = four(2);
+    radius = four(3);
+    transpose(x, y, z, radius);
+}
+inline Floats ascending_bits(Floats values) {
+    const __m512i bits = _mm512_castps_si512(values);
+    return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
+}
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    _mm512_storeu_si512(tiles, _mm512_cvttps_epi32(values));
+}
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    const __m512i all_bytes = _mm512_loadu_si512(bytes);
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+}
+
+/// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on
+/// the old value of its destination register on Zen 5, so that each iteration of a loop would wait for the one before.
+inline __m512i fresh_zeros() {
+    __m512i zeros = _mm512_setzero_si512();
+    LIGHTBIN_FORGET(zeros);  // else the compiler picks the zeroing form
+    return zeros;
+}
+
+template <class Id> LIGHTBIN_INLINE void store_ids(Id* out, __m512i ids) {
+    if constexpr (sizeof(Id) == 4)
+        _mm512_storeu_si512(out, ids);
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
+}
+
+/// Appends to `out` the ids, of sixteen, whose bit in `mask` is set. Returns the end; may write 16 elements past it.
+template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+    store_ids(out, _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids)));
+    return out + std::popcount(mask);
+}
+
+struct Bytes {
+    __m512i v;
+};
+using ByteMask = std::uint64_t;
+inline constexpr std::uint32_t byte_lanes = 64;
+
+inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm512_loadu_si512(from)};
+}
+inline void store_bytes(std::uint8_t* to, Bytes bytes) {
+    _mm512_storeu_si512(to, bytes.v);
+}
+inline Bytes broadcast_byte(unsigned each) {
+    return {_mm512_set1_epi8(static_cast<char>(each))};
+}
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm512_and_si512(a.v, b.v)};
+}
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {_mm512_min_epu8(a.v, b.v)};
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm512_subs_epu8(a.v, b.v)};
+}
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), indices.v)};
+}
+inline Bytes keep_where(Bytes bytes, Bytes condition) {
+    return {_mm512_maskz_mov_epi8(_mm512_test_epi8_mask(condition.v, condition.v), bytes.v)};
+}
+inline ByteMask not_zero(Bytes bytes) {
+    return _mm512_test_epi8_mask(bytes.v, bytes.v);
+}
+inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
+                  high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)), _mm512_cvtusepi16_epi8(high), 1)};
+}
+inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi8(fresh_zeros(), chosen, from.v));
+}
+inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
+    for (unsigned i = 0; i < 64; i += 16)
+        to = append_16(to, from + i, static_cast<unsigned>(chosen >> i & 0xffff));
+}
+
+}}}}  // namespace lightbin::detail
+
+LIGHTBIN_AVX512_END
+
+#include <lightbin/detail/base/warnings_on.inl>
+#endif

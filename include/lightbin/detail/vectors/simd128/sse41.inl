@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The operations of the tier of 128-bit vectors in SSE4.1. Included by simd128.hpp, in its namespace.
+
+using FloatRegister = __m128;
+
+inline __m128 load_each_fourth(const char* from, std::size_t) {
+    return _mm_loadu_ps(reinterpret_cast<const float*>(from));
+}
+inline void store_each_fourth(char* to, std::size_t, __m128 vec4) {
+    _mm_storeu_ps(reinterpret_cast<float*>(to), vec4);
+}
+
+#define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
+#define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
+#define LIGHTBIN_OP(name) _mm_##name##_ps
+#include <lightbin/detail/vectors/x86_vector.inl>
+
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
+    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
+}
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
+}
+inline Floats ascending_bits(Floats values) {
+    const __m128i bits = _mm_castps_si128(values);
+    return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
+}
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm_cvttps_epi32(values));
+}
+
+struct Bytes {
+    __m128i v;
+};
+
+inline Bytes load_half(const void* from) {
+    return {_mm_loadl_epi64(static_cast<const __m128i*>(from))};
+}
+inline void store_half(void* to, Bytes a) {
+    _mm_storel_epi64(static_cast<__m128i*>(to), a.v);
+}
+inline Bytes high_half(Bytes a) {
+    return {_mm_unpackhi_epi64(a.v, a.v)};
+}
+inline Bytes broadcast_byte(unsigned byte) {
+    return {_mm_set1_epi8(static_cast<char>(byte))};
+}
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm_and_si128(a.v, b.v)};
+}
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {_mm_min_epu8(a.v, b.v)};
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm_subs_epu8(a.v, b.v)};
+}
+inline Bytes shuffle(Bytes table, Bytes indices) {
+    return {_mm_shuffle_epi8(table.v, indices.v)};
+}
+inline Bytes all_if_not_zero(Bytes a) {
+    return {_mm_cmpgt_epi8(_mm_cmpeq_epi8(a.v, _mm_setzero_si128()), _mm_set1_epi8(-1))};
+}
+inline unsigned movemask(Bytes a) {
+    return static_cast<unsigned>(_mm_movemask_epi8(a.v));
+}
+inline Bytes relative_words(Bytes words, unsigned more, unsigned begin) {
+    return {_mm_subs_epu16(_mm_add_epi16(words.v, _mm_set1_epi16(static_cast<short>(more))),
+                          _mm_set1_epi16(static_cast<short>(begin)))};
+}
+inline Bytes narrow(Bytes low, Bytes high) {
+    const __m128i max = _mm_set1_epi16(255);  // packing takes words as signed, and there are some from 0x8000 on
+    return {_mm_packus_epi16(_mm_min_epu16(low.v, max), _mm_min_epu16(high.v, max))};
+}
+inline Bytes narrow_ids(Bytes ids) {
+    return {_mm_packus_epi32(ids.v, ids.v)};
+}
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    __m128i quarter[4];
+    for (int i = 0; i < 4; ++i)
+        quarter[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes) + i);
+    for (int bit = 7; bit >= 0; --bit) {
+        words[bit] = 0;
+        for (int i = 0; i < 4; ++i) {
+            words[bit] |= std::uint64_t{movemask(Bytes{quarter[i]})} << 16 * i;
+            quarter[i] = _mm_add_epi8(quarter[i], quarter[i]);
+        }
+    }
+}
