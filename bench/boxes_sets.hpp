@@ -29,7 +29,7 @@ struct BoxFamily {
 
 inline lightbin::Box whole_box_of(const glm::vec3& middle, const glm::mat3& frame, float x, float y,
                                   float z) {
-    return lightbin::whole_box(middle, frame[0] * x, frame[1] * y, frame[2] * z);
+    return lightbin::oriented_box(middle, frame[0] * x, frame[1] * y, frame[2] * z);
 }
 
 inline const std::vector<BoxFamily>& box_families() {

@@ -59,7 +59,7 @@ void for_each_listed(std::span<const Pair> pairs, std::span<const std::uint32_t>
 }
 
 /// A camera of the exact decider with a projection in floats.
-inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::Extent screen, int tile_size) {
+inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::ImageSize screen, int tile_size) {
     oracle::Camera camera;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
@@ -71,7 +71,7 @@ inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::Extent 
 class ExactDecider {
 public:
     /// A symmetric perspective matrix; tiles from the lower left corner.
-    ExactDecider(const glm::mat4& projection, lightbin::Extent screen, int tile_size)
+    ExactDecider(const glm::mat4& projection, lightbin::ImageSize screen, int tile_size)
         : truth_(camera_with(projection, screen, tile_size)) {
         using oracle::nearly;
         for (int x = 0; x < truth_.oracle.tiles_x(); ++x)

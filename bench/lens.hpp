@@ -24,7 +24,7 @@
 /// A symmetric perspective camera's lens and picture. As it stands, that of the field sets.
 struct Lens {
     double tan_half_height = double(tan_half_fov), near_depth = 0.1, far_depth = 1000;
-    lightbin::Extent screen = {1920, 1080};
+    lightbin::ImageSize screen = {1920, 1080};
 
     bool same(const Lens& other) const {
         return tan_half_height == other.tan_half_height && near_depth == other.near_depth &&

@@ -46,7 +46,7 @@ public:
     };
 
     Needed(const SeenScene& seen, const Spots& lights, int every) : lights_(lights.size()) {
-        const lightbin::Extent size = seen.picture.size;
+        const lightbin::ImageSize size = seen.picture.size;
         for (int y = 0; y < size.height; y += block)
             for (int x = 0; x < size.width; x += block)
                 add_block(seen, lights, every, x, y);
@@ -62,7 +62,7 @@ private:
 
     void add_block(const SeenScene& seen, const Spots& lights, int every, int x0, int y0) {
         const Frustum frustum(seen.scene.projection);
-        const lightbin::Extent size = seen.picture.size;
+        const lightbin::ImageSize size = seen.picture.size;
         const double scale = static_cast<double>(seen.scene.projection[2][2]),
                      offset = static_cast<double>(seen.scene.projection[3][2]);
         const auto next = [&](int from) { return (from + every - 1) / every * every; };

@@ -16,7 +16,7 @@
 
 /// What each pixel's centre sees, rows from the bottom as OpenGL has them.
 struct Picture {
-    lightbin::Extent size;
+    lightbin::ImageSize size;
     std::vector<float> depth;             ///< window depth, 1 where nothing is drawn
     std::vector<float> view_depth;        ///< along the viewing direction; the far plane where nothing is
     std::vector<std::uint32_t> triangle;  ///< number in the scene, `nothing` where none is drawn
@@ -34,7 +34,7 @@ struct Frustum {
 };
 
 /// The view-space point of a pixel's centre.
-inline glm::vec3 point_at(const Frustum& frustum, lightbin::Extent size, int x, int y, float view_depth) {
+inline glm::vec3 point_at(const Frustum& frustum, lightbin::ImageSize size, int x, int y, float view_depth) {
     const double depth = static_cast<double>(view_depth);
     return glm::vec3(glm::dvec3(((x + 0.5) / size.width * 2 - 1) * frustum.x * depth,
                                 ((y + 0.5) / size.height * 2 - 1) * frustum.y * depth, -depth));
@@ -43,7 +43,7 @@ inline glm::vec3 point_at(const Frustum& frustum, lightbin::Extent size, int x, 
 /// Draws the scene's triangles, both sides, one sample a pixel. A pixel's ray hits a triangle where its
 /// volumes with the three edges have one sign (homogeneous edge functions: Olano and Greer, 1997), so that
 /// nothing needs clipping; they are linear in the pixel.
-inline Picture rasterise(const BenchScene& scene, lightbin::Extent size) {
+inline Picture rasterise(const BenchScene& scene, lightbin::ImageSize size) {
     const std::size_t pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
     const Frustum frustum(scene.projection);
     Picture picture{size,

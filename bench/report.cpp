@@ -7,7 +7,7 @@
 //   bounds_ms       median of reduce_depth() on the CPU, where the method takes Z bounds. Drawing the depth is not in it
 //   build_ms        of the lists, lights in to lists out on one core, on rotating light sets
 //   upload_ms       of copying what a shader reads of them, lights left out, to memory that it can read
-//   shade_ms        evaluations of all pixels times evaluation_ns; a word of masks is Costs::word_evaluations of one
+//   shade_ms        evaluations of all pixels times evaluation_ns; a word of masks is AdviceCosts::word_evaluations of one
 //   total_ms        these together, with the 10th and 90th percentile of the frames
 //   evals, needed   light evaluations a drawn pixel, and of those lights that reach its point; ratio: of the two
 //   words           of masks that a drawn pixel looks at
@@ -40,7 +40,7 @@
 namespace {
 
 bool quick = false;
-double evaluation_ns = lightbin::Costs{}.evaluation_ns;
+double evaluation_ns = lightbin::AdviceCosts{}.evaluation_ns;
 
 constexpr double as_good = 1.03;  ///< what is so near to the best is as good
 
@@ -209,13 +209,13 @@ std::vector<float> sampled(const Picture& picture) {
 std::string advice_of(const SceneReport& report, const PreparedView& view) {
     const Result &box = report.best([](const Way&way) { return way.method == std::string_view("box"); }),
                  &best = report.best(ours);
-    const lightbin::Costs costs = {.evaluation_ns = evaluation_ns,
+    const lightbin::AdviceCosts costs = {.evaluation_ns = evaluation_ns,
                                    .z_bounds_ns = 1e6 * box.bounds,
                                    .upload_byte_ns = 1e3 * box.upload / box.kilobytes};
     const TiledView &finest = view.tiled.of(8), &finest_clusters = view.tiled.of(16);
     const std::vector<float> samples = sampled(view.seen.picture);
-    const lightbin::Extent size = view.seen.picture.size;
-    std::vector<lightbin::Plan> plans;
+    const lightbin::ImageSize size = view.seen.picture.size;
+    std::vector<lightbin::AdvicePlan> plans;
     std::visit(
         [&](const auto& lights) {
             const lightbin::Advice tiles = *lightbin::advise(finest.view, lights, costs, finest.bounds()),
@@ -227,7 +227,7 @@ std::string advice_of(const SceneReport& report, const PreparedView& view) {
                 plans.insert(plans.end(), advice->plans().begin(), advice->plans().end());
         },
         view.seen.scene.light_set(0));
-    const auto result_of = [&](const lightbin::Plan& plan) {
+    const auto result_of = [&](const lightbin::AdvicePlan& plan) {
         return std::ranges::find_if(report.results, [&](const Result& r) {
             return ours(r.way) && plan.tiled && r.way.tile_size == plan.tile_size &&
                    r.way.depth_test == plan.depth_test && r.way.slicing == plan.slicing &&
@@ -235,7 +235,7 @@ std::string advice_of(const SceneReport& report, const PreparedView& view) {
         });
     };
     std::erase_if(plans, [&](const auto& plan) { return result_of(plan) == report.results.end(); });
-    const lightbin::Plan plan = lightbin::Advice(plans).best();
+    const lightbin::AdvicePlan plan = lightbin::Advice(plans).best();
     return "; advise(): " + to_string(plan) + ", " + more(*result_of(plan), best);
 }
 
@@ -283,7 +283,7 @@ SceneReport measure(Case scene) {
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const Measured& m = measured[i];
         const double evaluations = m.evaluations / pixels, words = m.words / pixels,
-                     shade = (evaluations + words * lightbin::Costs{}.word_evaluations) * drawn *
+                     shade = (evaluations + words * lightbin::AdviceCosts{}.word_evaluations) * drawn *
                              evaluation_ns * 1e-6;
         std::vector<double> totals;
         for (std::size_t turn = 0; turn < m.build.size(); ++turn)

@@ -51,7 +51,7 @@ inline Lights whole_spheres(const Spots& spots) {
 inline Lights least_spheres(const Spots& spots) {
     Lights lights;
     for (const lightbin::Spot& spot : spots) {
-        const lightbin::Sphere s = lightbin::least_sphere(spot);
+        const lightbin::Sphere s = lightbin::bounding_sphere(spot);
         lights.emplace_back(s.x, s.y, s.z, s.radius);
     }
     return lights;

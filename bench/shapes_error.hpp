@@ -181,9 +181,9 @@ inline ShapeErrors measure_spots(std::size_t spots) {
     for (const float angle : {10.0f, 20.0f, 30.0f, 45.0f, 60.0f, 80.0f, 90.0f, 110.0f}) {
         ShapeFamily& family = families.emplace_back(ShapeFamily{text("%g", double(angle)), {}});
         for (const lightbin::Spot& spot : spots_of_angle(spots, angle, ++seed))
-            family.lights.push_back({lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius}, least_sphere(spot), spot});
+            family.lights.push_back({lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius}, bounding_sphere(spot), spot});
     }
-    return measure_shapes("spots_error.csv", "method,half_angle,spots,exact,whole_sphere,least_sphere,spot",
+    return measure_shapes("spots_error.csv", "method,half_angle,spots,exact,whole_sphere,bounding_sphere,spot",
                           "half angle", families, 100);
 }
 

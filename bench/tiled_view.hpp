@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-inline constexpr lightbin::Extent screen = {1920, 1080};
+inline constexpr lightbin::ImageSize screen = {1920, 1080};
 
 struct SeenScene {
     BenchScene scene;
@@ -93,7 +93,7 @@ private:
         return static_cast<float>(std::min(reach, frustum.far_depth));
     }
 
-    static Lens lens_of(const Frustum& frustum, lightbin::Extent size) {
+    static Lens lens_of(const Frustum& frustum, lightbin::ImageSize size) {
         return {frustum.y, frustum.near_depth, frustum.far_depth, size};
     }
 };

@@ -137,7 +137,7 @@ int main(int count, char** words) {
         if (!view) fail(view.error().message());
         const auto masks = binner.bin(*view, lightbin::world_space(lights, camera), *slices);
         if (!masks) fail(masks.error().message());
-        const lightbin::ShaderGrid grid = lightbin::shader_grid(*view);
+        const lightbin::GridConstants grid = lightbin::grid_constants(*view);
         upload(0, "lightbin_masks", GL_R32UI, masks->words());
         upload(2, "lights", GL_RGBA32F, lights);
         glUniform4ui(uniform("lightbin_grid"), grid.tile_size, grid.tiles_x, grid.width, grid.height);

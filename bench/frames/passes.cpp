@@ -64,13 +64,13 @@ void shade_deferred(Stage& stage, const LightLookup& lights) {
 
 lightbin::ZBounds DepthBounds::reduce(Stage& stage) {
     const lightbin::View view = stage.view();
-    lightbin::ReduceShaderOptions options;
+    lightbin::ReduceOptions options;
     options.language = lightbin::ShaderLanguage::glsl_330;
     options.stage = lightbin::ShaderStage::fragment;
     options.skip_background = true;
     const GLuint program = stage.use(stage.shaders().everywhere_vertex(),
                                      "#version 330 core\n" + value_of(lightbin::reduce_shader(options)).text);
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    const lightbin::ReduceConstants constants = lightbin::reduce_constants(view);
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     stage.memory.read_from(unit_depth, stage.depth());

@@ -142,8 +142,8 @@ LightLookup every_light() {
 }
 
 // Texel buffers, which OpenGL 3.3 has, are read the same way by all.
-LightLookup listed_lights(const lightbin::ShaderOptions& options) {
-    lightbin::ShaderOptions read = options;
+LightLookup listed_lights(const lightbin::SnippetOptions& options) {
+    lightbin::SnippetOptions read = options;
     read.language = lightbin::ShaderLanguage::glsl_330;
     read.storage = lightbin::ListStorage::texel_buffer;
     return {lightbin::shader_snippet(read)->text + "\n#define each_light lightbin_for_each_light\n" +

@@ -15,7 +15,7 @@ struct LightLookup {
     std::string text;
 };
 LightLookup every_light();
-LightLookup listed_lights(const lightbin::ShaderOptions& options = {});
+LightLookup listed_lights(const lightbin::SnippetOptions& options = {});
 
 /// Writes the texts for one version of GLSL and one kind of frame.
 class Shaders {

@@ -157,7 +157,7 @@ void Stage::order_lights(std::span<const std::uint32_t> order) {
 
 GLuint Stage::set(GLuint program) const {
     glUseProgram(program);
-    const lightbin::ShaderGrid grid = lightbin::shader_grid(view());
+    const lightbin::GridConstants grid = lightbin::grid_constants(view());
     glUniform4uiv(glGetUniformLocation(program, "lightbin_grid"), 1, &grid.tile_size);  // if it has one
     return program;
 }

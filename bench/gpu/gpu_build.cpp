@@ -13,7 +13,7 @@ template <class Range> std::span<const std::byte> bytes_of(const Range& range) {
 }
 
 lightbin::CullPlan plan_of(const GpuFrame& frame, const lightbin::View& view,
-                           const lightbin::CullShaderOptions& options, const lightbin::CullRoom& room,
+                           const lightbin::CullOptions& options, const lightbin::CullCapacity& room,
                            const std::optional<lightbin::Slices>& slices) {
     std::optional<lightbin::Matrix> to_view;
     if (frame.to_view)
@@ -86,7 +86,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, bool mas
         make(name, bytes.size());
         if (!bytes.empty()) device.write(name, bytes);
     };
-    make("grid", sizeof(lightbin::ShaderCull));
+    make("grid", sizeof(lightbin::CullConstants));
     make("scratch", plan_.bytes.scratch);
     make("tiles", plan_.bytes.tiles);
     make("lists", masks ? plan_.bytes.masks : plan_.bytes.lists);

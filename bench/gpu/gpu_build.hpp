@@ -47,8 +47,8 @@ private:
     GpuDevice& device_;
     std::span<const lightbin::CullPass> passes_;
     lightbin::View view_;
-    lightbin::CullShaderOptions options_;
-    lightbin::CullRoom room_;
+    lightbin::CullOptions options_;
+    lightbin::CullCapacity room_;
     std::optional<lightbin::Slices> slices_;
     lightbin::CullPlan plan_;
 };

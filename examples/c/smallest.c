@@ -205,7 +205,7 @@ int main(int count, char** arguments) {
         lightbin_masks masks = {.size = sizeof masks};
         succeed(lightbin_bin_masks(binner, view, &given, &inputs, &masks));
         lightbin_grid_constants constants;
-        succeed(lightbin_shader_grid(view, 0, 0, &constants));
+        succeed(lightbin_get_grid_constants(view, 0, 0, &constants));
         send(&words, 0, masks.words, masks.word_count * sizeof *masks.words);
         send(&spheres, 2, lights, light_count * sizeof *lights);
         glUniform4ui(glGetUniformLocation(program, "lightbin_grid"), constants.tile_size, constants.tiles_x,

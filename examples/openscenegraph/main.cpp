@@ -92,7 +92,7 @@ struct LightLists : osg::Camera::DrawCallback {
         const auto begin = std::chrono::steady_clock::now();
         const osg::Camera& camera = *info.getCurrentCamera();
         const osg::Viewport& window = *camera.getViewport();
-        const lightbin::Extent size{static_cast<int>(window.width()), static_cast<int>(window.height())};
+        const lightbin::ImageSize size{static_cast<int>(window.width()), static_cast<int>(window.height())};
         // Made anew each frame, which costs nothing beside the lists: no change of lens or window is missed.
         const auto view = lightbin::View::from_projection(camera.getProjectionMatrix(), size);
         if (!view) fail(view.error().message());
@@ -103,7 +103,7 @@ struct LightLists : osg::Camera::DrawCallback {
         tiles.fill(lists->ranges());
         ids.fill(lists->ids());
         light_data.fill(lights);
-        const lightbin::ShaderGrid constants = lightbin::shader_grid(*view);
+        const lightbin::GridConstants constants = lightbin::grid_constants(*view);
         grid->set(constants.tile_size, constants.tiles_x, constants.width, constants.height);
         lists_ms = milliseconds_since(begin);
     }

@@ -16,7 +16,7 @@
 #include <vector>
 
 using lightbin::Slicing;
-using lightbin::Verdict;
+using lightbin::AdviceVerdict;
 
 namespace {
 
@@ -34,7 +34,7 @@ __attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) 
 
 // A part of a way, and another way that differs in it.
 struct Part {
-    Verdict verdict;
+    AdviceVerdict verdict;
     Way other;
     bool by_itself = false;  // nothing else differs but the tile size, so what gains little is left out
     double gain = 0;         // what a frame takes less by the other, nanoseconds
@@ -53,10 +53,10 @@ std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const
                          with(way, part, !(way.*part)),
                          true});
     };
-    for (const Verdict& verdict : advice.verdicts(way.plan)) {
+    for (const AdviceVerdict& verdict : advice.verdicts(way.plan)) {
         if (verdict.part == "masks") continue;  // see WayCosts::advise()
         Part part = {verdict, way};
-        const auto take = [&](const lightbin::Plan& plan) {
+        const auto take = [&](const lightbin::AdvicePlan& plan) {
             part.other.plan = plan;
             part.verdict.instead = to_string(plan);
             part.by_itself = plan.tiled && (plan.depth_test != way.plan.depth_test) !=
@@ -93,7 +93,7 @@ struct Found {
     Way way;
     std::vector<Part> parts;
     WayCost cost, plain, untiled, everything;
-    lightbin::Plan plain_plan, everything_plan;
+    lightbin::AdvicePlan plain_plan, everything_plan;
 };
 
 // Begins with the cheapest plan, and goes on to the best of the ways that differ in one part as long as that gains, so
@@ -103,7 +103,7 @@ Found find(WayCosts& costs) {
     Found found;
     found.way.plan = advice.best();
     const auto plain =
-        std::find_if(advice.plans().begin(), advice.plans().end(), [](const lightbin::Plan& plan) {
+        std::find_if(advice.plans().begin(), advice.plans().end(), [](const lightbin::AdvicePlan& plan) {
             return plan.tiled && !plan.depth_test && plan.slicing == Slicing::none;
         });
     found.plain_plan = *plain;
@@ -144,7 +144,7 @@ Found find(WayCosts& costs) {
 // The lines of C++ that do as is advised.
 std::string code(const Found& found, WayCosts& costs) {
     const Way& way = found.way;
-    const lightbin::Plan& plan = way.plan;
+    const lightbin::AdvicePlan& plan = way.plan;
     if (!plan.tiled) return "// No lists: the shader goes through all lights.\n";
     const auto [width, height] = costs.view().viewport();
     std::string lines =

@@ -31,7 +31,7 @@ Polygon clipped(const glm::dvec4 (&triangle)[3]) {
 }  // namespace
 
 CpuDepth draw_depth_on_cpu(const Scene& scene, const glm::dmat4& projection_times_view,
-                           lightbin::Extent size) {
+                           lightbin::ImageSize size) {
     const auto width = static_cast<std::size_t>(size.width);
     CpuDepth picture{std::vector<float>(width * static_cast<std::size_t>(size.height), 1.0f)};
     std::uint64_t shaded = 0;

@@ -20,4 +20,4 @@ struct CpuDepth {
 
 // Draws the opaque triangles, both sides, clipped at the near plane, where window depth is 0, and at the far plane.
 CpuDepth draw_depth_on_cpu(const Scene& scene, const glm::dmat4& projection_times_view,
-                           lightbin::Extent size);
+                           lightbin::ImageSize size);

@@ -56,7 +56,7 @@ void CulledLights::upload(std::span<const lightbin::Spot> lights) {
 }
 
 void CulledLights::reduce(const lightbin::View& view, const FrameBuffer& drawn, bool skip_background) {
-    const lightbin::ReduceShaderOptions options{.language = language_of(glsl_),
+    const lightbin::ReduceOptions options{.language = language_of(glsl_),
                                                 .samples = drawn.samples(),
                                                 .orthographic = view.orthographic(),
                                                 .skip_background = skip_background};
@@ -64,7 +64,7 @@ void CulledLights::reduce(const lightbin::View& view, const FrameBuffer& drawn, 
     if (program == 0)
         program = link_compute_program(version_line(glsl_) + value_of(lightbin::reduce_shader(options)).text);
     glUseProgram(program);
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    const lightbin::ReduceConstants constants = lightbin::reduce_constants(view);
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(options.depth.binding));
@@ -78,7 +78,7 @@ void CulledLights::reduce(const lightbin::View& view, const FrameBuffer& drawn, 
     dispatch(static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y()));
 }
 
-const std::vector<CulledLights::Pass>& CulledLights::passes(const lightbin::CullShaderOptions& options) {
+const std::vector<CulledLights::Pass>& CulledLights::passes(const lightbin::CullOptions& options) {
     std::vector<Pass>& made = passes_[{options.depth_test, options.max_only,
                                        options.slicing == lightbin::Slicing::clusters, options.orthographic}];
     if (!made.empty()) return made;
@@ -92,7 +92,7 @@ const std::vector<CulledLights::Pass>& CulledLights::passes(const lightbin::Cull
 CulledLights::Made CulledLights::build(const lightbin::View& view, const Lists& wanted, GLuint tiles,
                                        GLuint lists) {
     using enum lightbin::Slicing;
-    lightbin::CullShaderOptions options;
+    lightbin::CullOptions options;
     options.language = language_of(glsl_);
     options.kind = has_spots_ ? lightbin::CullKind::spot : lightbin::CullKind::sphere;
     options.lights_at.stride = sizeof(lightbin::Spot) / 4;

@@ -51,7 +51,7 @@ private:
     };
     using Key = std::tuple<bool, bool, bool, bool>;  // depth_test, max_only, clusters, orthographic
 
-    const std::vector<Pass>& passes(const lightbin::CullShaderOptions& options);
+    const std::vector<Pass>& passes(const lightbin::CullOptions& options);
     GLuint buffer(const char* name, std::size_t bytes, const void* data = nullptr);
 
     int glsl_;

@@ -65,7 +65,7 @@ lightbin::Box box_of(const GpuBox& box) {
     const glm::dmat3 large = (1 + 0x1p-19 * size) * half_axes;
 
     const double taper = static_cast<double>(box.eye_taper.w);
-    if (taper == 1) return lightbin::whole_box(centre, large[0], large[1], large[2]);
+    if (taper == 1) return lightbin::oriented_box(centre, large[0], large[1], large[2]);
     const glm::dvec3 forward = 2 / (1 - taper) * large[2];
     return lightbin::projector_box(centre + large[2] - forward, forward, large[0], large[1], taper);
 }

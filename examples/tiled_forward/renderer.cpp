@@ -73,8 +73,8 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
     const bool pre_pass = settings.depth == DepthUse::pre_pass;
     if (pre_pass) draw_depth();
-    grid_ = lightbin::shader_grid(view);
-    shader_view_ = lightbin::shader_view(view);
+    grid_ = lightbin::grid_constants(view);
+    shader_view_ = lightbin::view_constants(view);
 
     // 3. The lists: which lights can reach which tile. In the end they are in buffers on the GPU.
     const Listed listed = settings.gpu_build ? list_on_gpu(view, settings, watch, report)
@@ -508,7 +508,7 @@ void Renderer::reduce_on_gpu(const lightbin::View& view, bool skip_background, s
         program = link_program(overlay_vertex_shader(glsl_),
                                reduce_fragment_shader(glsl_, samples, view.orthographic(), skip_background));
     glUseProgram(program);
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    const lightbin::ReduceConstants constants = lightbin::reduce_constants(view);
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     glActiveTexture(GL_TEXTURE0);

@@ -156,8 +156,8 @@ private:
 
     // Of the frame
     glm::mat4 projection_{1}, view_{1};
-    lightbin::ShaderGrid grid_{};
-    lightbin::ShaderView shader_view_{};
+    lightbin::GridConstants grid_{};
+    lightbin::ViewConstants shader_view_{};
     std::optional<lightbin::Slices> slices_;  // with z-bins or clusters
     std::vector<float> depth_buffer_, min_depth_, max_depth_, glass_max_, pixel_depth_;
 };

@@ -7,9 +7,9 @@ bool is_es(int glsl) {
     return glsl < 330;
 }
 
-lightbin::ShaderOptions list_options(int glsl) {
+lightbin::SnippetOptions list_options(int glsl) {
     using namespace lightbin;
-    ShaderOptions options;
+    SnippetOptions options;
     options.language = glsl == 430   ? ShaderLanguage::glsl_430
                        : glsl == 330 ? ShaderLanguage::glsl_330
                        : glsl == 310 ? ShaderLanguage::essl_310
@@ -22,7 +22,7 @@ lightbin::ShaderOptions list_options(int glsl) {
 
 // Declares lightbin_for_each_light() and what it reads.
 std::string tile_lists(int glsl, lightbin::Slicing slicing, bool heat_map = false, ShaderChecks checks = {}) {
-    lightbin::ShaderOptions options = list_options(glsl);
+    lightbin::SnippetOptions options = list_options(glsl);
     options.slicing = slicing;
     options.heat_map = heat_map;
     options.view_check = checks.view;
@@ -206,7 +206,7 @@ lightbin::ShaderBinding list_binding(int glsl) {
 }
 
 std::string reduce_fragment_shader(int glsl, int samples, bool orthographic, bool skip_background) {
-    lightbin::ReduceShaderOptions options;
+    lightbin::ReduceOptions options;
     options.language = list_options(glsl).language;
     options.stage = lightbin::ShaderStage::fragment;
     options.samples = samples;

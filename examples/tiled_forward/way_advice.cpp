@@ -7,7 +7,7 @@
 #include <utility>
 
 lightbin::Advice WayCosts::advise() {
-    const lightbin::Costs costs = {.evaluation_ns = prices_.evaluation_ns,
+    const lightbin::AdviceCosts costs = {.evaluation_ns = prices_.evaluation_ns,
                                    .z_bounds_ns = z_bounds_ns({.plan = {.tile_size = 16}}),
                                    .upload_byte_ns = prices_.upload_byte_ns,
                                    .overdraw = depth_.overdraw};
@@ -15,7 +15,7 @@ lightbin::Advice WayCosts::advise() {
     const auto [width, height] = view_.viewport();
     const int step = std::min(width, height) < 64 ? 1 : 4;
     std::vector<float> samples;
-    const lightbin::Extent size = {width / step, height / step};
+    const lightbin::ImageSize size = {width / step, height / step};
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
             samples.push_back(
@@ -28,13 +28,13 @@ lightbin::Advice WayCosts::advise() {
         const lightbin::Advice sliced =
             value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
                                              {.depths = samples, .size = size}, costs));
-        std::vector<lightbin::Plan> plans(bounded.plans().begin(), bounded.plans().end());
-        for (const lightbin::Plan& plan : sliced.plans())
+        std::vector<lightbin::AdvicePlan> plans(bounded.plans().begin(), bounded.plans().end());
+        for (const lightbin::AdvicePlan& plan : sliced.plans())
             if (plan.slicing != lightbin::Slicing::none) plans.push_back(plan);
         const lightbin::Advice all(plans);
         masks_ = *std::find_if(all.plans().begin(), all.plans().end(), [](const auto& plan) { return plan.masks; });
         std::erase_if(plans,
-                      [](const lightbin::Plan& plan) { return plan.masks; });  // WayCosts measures lists
+                      [](const lightbin::AdvicePlan& plan) { return plan.masks; });  // WayCosts measures lists
         return lightbin::Advice(std::move(plans));
     };
     return has_cones() ? advised(sets_[0].spots) : advised(sets_[0].spheres);

@@ -81,7 +81,7 @@ constexpr Options ways[] = {
     {.slicing = Slicing::clusters},
     {.depth_test = true, .slicing = Slicing::clusters}};
 
-bool is(const lightbin::Plan& plan, const Options& way) {
+bool is(const lightbin::AdvicePlan& plan, const Options& way) {
     return plan.tiled && plan.depth_test == way.depth_test && plan.slicing == way.slicing;
 }
 
@@ -169,7 +169,7 @@ template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) 
         if (!cones) {
             least->clear();
             for (const lightbin::Spot& spot : lights.spots)
-                least->push_back(lightbin::least_sphere(spot));
+                least->push_back(lightbin::bounding_sphere(spot));
         }
         const auto grid = cones ? bin(lights.spots) : bin(lights.spots.empty() ? lights.spheres : *least);
         const double ns = now_ns() - start;

@@ -19,7 +19,7 @@
 
 // A plan, and the parts that lightbin::advise() leaves to the caller.
 struct Way {
-    lightbin::Plan plan;
+    lightbin::AdvicePlan plan;
     bool minimum = true, maximum = true;  // sides of the Z bounds, where the plan has any
     bool narrow_ids = false;              // of 16 bits
     bool threads = false;                 // as many as the processor has, else one
@@ -36,7 +36,7 @@ struct WayCost {
 
 // What is told by drawing, see DrawTimes.
 struct Prices {
-    double evaluation_ns = lightbin::Costs().evaluation_ns, upload_byte_ns = 0.1;
+    double evaluation_ns = lightbin::AdviceCosts().evaluation_ns, upload_byte_ns = 0.1;
     double depth_pass_ns = 0;
     double read_back_ns = 0;             // of the depth buffer; infinite where it can't be
     double gpu_reduction_ns = HUGE_VAL;  // in place of the read-back and the reduction here
@@ -66,7 +66,7 @@ public:
     // Every plan of lightbin::advise(), with all Z bounds that can be had, and of advise_slices().
     // Plans with masks are left out, but for the cheapest of them, masks().
     lightbin::Advice advise();
-    const lightbin::Plan& masks() const { return masks_; }
+    const lightbin::AdvicePlan& masks() const { return masks_; }
 
     // Builds each way's lists a dozen times, by turns, each time with the lights a little aside, and takes the medians.
     // Bytes and evaluations are counted with the lights where they are. A way whose plan it can't measure costs infinity.
@@ -108,7 +108,7 @@ private:
     lightbin::Slices clusters_, z_bins_;
     double clusters_ns_ = 0, z_bins_ns_ = 0;  // to make them
     Prices prices_;
-    lightbin::Plan masks_;  // by advise()
+    lightbin::AdvicePlan masks_;  // by advise()
     std::map<std::tuple<int, bool, bool>, Reduced> reduced_;
     std::size_t workers_;
     std::unique_ptr<Pool> pool_;

@@ -51,7 +51,7 @@ export class Lighting {
         this.scenes = scenes;
     }
 
-    // What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. `clip` is
+    // What is drawn with before any light: projection, view, moon, grid, view_constants, reduce, tiles_x, tiles_y. `clip` is
     // the graphics API, 'webgl' or 'webgpu'.
     view({camera, width, height, tile_size, clip}) {
         const look = this.scenes.look(camera, width / height, clip);
@@ -63,8 +63,8 @@ export class Lighting {
         if (this.#view) this.#view.update(given);
         else this.#view = this.lightbin.view(given);
         return {
-            ...look, grid: this.#view.shaderGrid(), shader_view: this.#view.shaderView(),
-            reduce: this.#view.shaderReduce(), tiles_x: this.#view.info.tilesX, tiles_y: this.#view.info.tilesY,
+            ...look, grid: this.#view.gridConstants(), view_constants: this.#view.viewConstants(),
+            reduce: this.#view.reduceConstants(), tiles_x: this.#view.info.tilesX, tiles_y: this.#view.info.tilesY,
         };
     }
 

@@ -193,8 +193,8 @@ export class WebGl {
         gl.uniform1i(program.at('sun_count'), frame.sun_count);
         gl.uniform1f(program.at('longest_list'), Math.max(frame.longest, 1));
         gl.uniform4uiv(program.at('lightbin_grid'), frame.grid.slice(0, 4));
-        gl.uniform4fv(program.at('lightbin_image'), frame.shader_view.slice(0, 4));
-        gl.uniform4fv(program.at('lightbin_depths'), frame.shader_view.slice(4));
+        gl.uniform4fv(program.at('lightbin_image'), frame.view_constants.slice(0, 4));
+        gl.uniform4fv(program.at('lightbin_depths'), frame.view_constants.slice(4));
     }
 
     #draw_triangles(program, depth_is_there, glass_has_lists, with_glass) {

@@ -141,7 +141,7 @@ export class WebGpu {
     #upload(view, settings) {
         this.#store('frame', usages.uniform).write(frame_constants(view, settings, this.#longest));
         this.#store('grid', usages.uniform).write(view.grid);
-        this.#store('view', usages.uniform).write(view.shader_view);
+        this.#store('view', usages.uniform).write(view.view_constants);
         this.#store('reduce', usages.uniform).write(view.reduce);
     }
 

@@ -62,7 +62,7 @@ template <Options options = Options{}> class Binner {
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
     using Inputs = lightbin::Inputs<options.depth_test, options.slicing>;
-    /// The format of the grids, to give to ShaderOptions::format for a shader that reads them.
+    /// The format of the grids, to give to SnippetOptions::format for a shader that reads them.
     static constexpr ListFormat list_format = {.ids = options.ids};
 
     Binner() = default;

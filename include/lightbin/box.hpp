@@ -84,7 +84,7 @@ inline Box right_angled_box(const Triple& centre, const Triple& along, double ha
 /// centre, half_x, half_y, half_z  any type with members x, y and z, floats or doubles: the box's centre, and vectors
 ///                                 from there to the middles of three faces, of any lengths and angles
 template <class Point>
-Box whole_box(const Point& centre, const Point& half_x, const Point& half_y, const Point& half_z) {
+Box oriented_box(const Point& centre, const Point& half_x, const Point& half_y, const Point& half_z) {
     return detail::box_with_own_sphere(detail::triple(centre),
                                        {detail::triple(half_x), detail::triple(half_y), detail::triple(half_z)}, 1);
 }
@@ -95,7 +95,7 @@ Box whole_box(const Point& centre, const Point& half_x, const Point& half_y, con
 /// transform  from the cube's space to the space of the lights, any type that matrix.hpp lists; the last row is not
 ///            read
 /// half_side  half of the cube's side: 1 for the cube from -1 to 1, 0.5 for the cube from -0.5 to 0.5
-template <class Transform> Box whole_box(const Transform& transform, double half_side) {
+template <class Transform> Box oriented_box(const Transform& transform, double half_side) {
     const Matrix m = detail::to_matrix(transform);
     detail::Triple axes[3];
     for (int i = 0; i < 3; ++i)
@@ -133,7 +133,7 @@ template <class Direction> Box half_sphere(const Sphere& light, const Direction&
 
 /// Returns the frustum that a projector lights, with a sphere around its corners.
 ///
-/// eye             where the rays of the projector meet; types as for whole_box()
+/// eye             where the rays of the projector meet; types as for oriented_box()
 /// forward         vector from the eye to the middle of the far face
 /// half_x, half_y  vectors from there to the middles of two sides of the far face
 /// begin           where the frustum begins, as a fraction of `forward`: 0 for the whole pyramid, below 1

@@ -21,7 +21,7 @@ struct LightCoverage {
     /// plane and beyond its far plane.
     float nearest, farthest;
     /// The light's size in the image, in pixels: the larger side of the rectangle around the projection of its sphere,
-    /// or of a spot's least_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In a
+    /// or of a spot's bounding_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In a
     /// perspective view it is the size of the part beyond the near plane. It is +inf where no finite bound is known, as
     /// with an infinite radius.
     float pixels;
@@ -40,7 +40,7 @@ inline float enlarged(float radius, float by) {
     return float_above(static_cast<double>(radius) + static_cast<double>(by));
 }
 
-/// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of least_sphere() or
+/// Returns the extent of the light with an id. Around a spot or a Box the sphere is that of bounding_sphere() or
 /// bounding_sphere(), enlarged by how far the light can reach outside of the spot or box that was rounded to float.
 template <LightKind kind> LightExtent extent_of(const Camera& camera, const ViewLights& lights, std::uint32_t id) {
     if constexpr (kind == LightKind::mixed) {
@@ -63,7 +63,7 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
             corners.radius = enlarged(corners.radius, light.tolerance);
             if (corners.radius < sphere.radius) sphere = corners;
         } else if (light.tolerance > 0) {
-            sphere = least_sphere(light);
+            sphere = bounding_sphere(light);
             sphere.radius = enlarged(sphere.radius, light.tolerance);
         }
         return {sphere, light.nearest, light.farthest};

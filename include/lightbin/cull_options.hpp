@@ -54,7 +54,7 @@ struct CullLayout {
 /// with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by default at
 /// bindings below 4, 128 invocations in a group and 9 KB of shared memory; none uses subgroups, and no group waits
 /// for another.
-struct CullShaderOptions {
+struct CullOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     CullKind kind = CullKind::sphere;
     CullLayout lights_at = {};
@@ -71,22 +71,22 @@ struct CullShaderOptions {
     /// The buffers; CullBytes has their sizes. Passes use slots in turn: no pass uses two buffers that have the
     /// same default.
     ShaderSlot lights = {0}, z_bounds = {0}, scratch = {1}, slices = {2}, tiles = {2}, light_count = {3}, lists = {3};
-    ShaderSlot grid = {4};                  ///< the uniform block with the constants, laid out as ShaderCull
+    ShaderSlot grid = {4};                  ///< the uniform block with the constants, laid out as CullConstants
     std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
 /// The numbers of lights and of list entries that the caller's buffers have room for.
-struct CullRoom {
+struct CullCapacity {
     std::uint32_t lights = 0;   ///< with count_in_buffer the greatest number of lights, else the number of lights
     std::uint32_t entries = 0;  ///< ids that fit in `lists`
 };
 
 /// The values of the constants. The uniform block `grid` has this layout, a vec4 or uvec4 a line.
-struct ShaderCull {
-    std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters, else 1; CullRoom::entries
+struct CullConstants {
+    std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters, else 1; CullCapacity::entries
     /// Columns and rows of mask blocks; log2 of the tiles along a block's side, and of the slices in a block.
     std::uint32_t blocks_x, blocks_y, block_shift, slice_shift;
-    // CullRoom::lights; the segments of lights, and the steps of 1024 lights in each. Then where arrays begin in
+    // CullCapacity::lights; the segments of lights, and the steps of 1024 lights in each. Then where arrays begin in
     // `scratch`, in words: counts of groups of lights, masks, counts of cells, ranges of cells, and sums of ranges. The
     // lights themselves are behind CullTotals.
     std::uint32_t lights, segments, steps, groups;
@@ -103,7 +103,7 @@ struct ShaderCull {
     float column_z[3], cone_error;
     float origin_image[3], max_distance;
 };
-static_assert(sizeof(ShaderCull) == 13 * 16);  // it has no padding
+static_assert(sizeof(CullConstants) == 13 * 16);  // it has no padding
 
 /// The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535.
 struct CullGroups {
@@ -123,13 +123,13 @@ struct CullTotals {
     std::uint32_t entries;   ///< of the complete lists, at most 2^32 - 1; undefined if there are masks
     std::uint32_t rejected;  ///< lights left out as bad input: see Sphere and Spot
     std::uint32_t visible;   ///< lights in view
-    std::uint32_t lights;    ///< how many were given: with count_in_buffer, it may exceed CullRoom::lights
+    std::uint32_t lights;    ///< how many were given: with count_in_buffer, it may exceed CullCapacity::lights
 };
 static_assert(sizeof(CullTotals) == 16);
 
 /// All that a program needs to run the passes for a view.
 struct CullPlan {
-    ShaderCull constants = {};
+    CullConstants constants = {};
     CullBytes bytes = {};
     CullGroups groups[std::size(cull_passes) + 1] = {};  ///< by CullPass
 

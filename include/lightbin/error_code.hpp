@@ -31,7 +31,7 @@ enum class ErrorCode : std::uint8_t {
     too_many_lights,
     // light grid
     too_many_entries,
-    too_many_list_places,
+    too_many_pairs,
     range_buffer_too_small,
     id_buffer_too_small,
     grids_differ,

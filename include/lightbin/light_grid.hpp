@@ -99,7 +99,7 @@ public:
                          counts_, slices_, ranks_);
     }
 
-    /// Copies ranges() and ids() behind those of other views, for shaders made with ShaderOptions::views. Returns the
+    /// Copies ranges() and ids() behind those of other views, for shaders made with SnippetOptions::views. Returns the
     /// grid of all views so far: its ranges() are those of view 0, then those of view 1, and so on, and so are its
     /// ids(); every offset counts from the beginning of `ids`. Its light_counts() and ranks() are those of this grid.
     /// The buffers are only written, in ascending order, and keep what the earlier views filled.

@@ -113,7 +113,7 @@ typedef enum lightbin_error {
     LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 114,
     LIGHTBIN_TOO_MANY_LIGHTS = 115,
     LIGHTBIN_TOO_MANY_ENTRIES = 116,
-    LIGHTBIN_TOO_MANY_LIST_PLACES = 117,
+    LIGHTBIN_TOO_MANY_PAIRS = 117,
     LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 118,
     LIGHTBIN_ID_BUFFER_TOO_SMALL = 119,
     LIGHTBIN_GRIDS_DIFFER = 120,
@@ -551,7 +551,7 @@ typedef struct lightbin_grid {
  * inputs  null: none
  *
  * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number; LIGHTBIN_TOO_MANY_ENTRIES, LIGHTBIN_TOO_MANY_CELLS
- * and LIGHTBIN_TOO_MANY_LIST_PLACES, more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
+ * and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
  * tiles; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
  * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs;
  * LIGHTBIN_CALLBACK_THREW, of lightbin_threads::run. */
@@ -858,7 +858,7 @@ typedef struct lightbin_grid_constants {
     uint32_t tile_size, tiles_x, width, height;
     int32_t corner_x, corner_y, unused[2];
 } lightbin_grid_constants;
-LIGHTBIN_API lightbin_result lightbin_shader_grid(const lightbin_view* view, int32_t corner_x,
+LIGHTBIN_API lightbin_result lightbin_get_grid_constants(const lightbin_view* view, int32_t corner_x,
                                                   int32_t corner_y, lightbin_grid_constants* constants);
 
 /* The constants `image` and `depths` that the text's function `check_view` reads.
@@ -867,7 +867,7 @@ LIGHTBIN_API lightbin_result lightbin_shader_grid(const lightbin_view* view, int
 typedef struct lightbin_view_constants {
     float scale_x, scale_y, offset_x, offset_y, forward, perspective, nearest, tolerance;
 } lightbin_view_constants;
-LIGHTBIN_API lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
+LIGHTBIN_API lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tolerance,
                                                   lightbin_view_constants* constants);
 
 /* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors:
@@ -910,7 +910,7 @@ typedef struct lightbin_reduce_constants {
     float far_end, slope, margin, unused;
     int32_t corner_x, corner_y, unused_corner[2];
 } lightbin_reduce_constants;
-LIGHTBIN_API lightbin_result lightbin_shader_reduce(const lightbin_view* view, int32_t corner_x,
+LIGHTBIN_API lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, int32_t corner_x,
                                                     int32_t corner_y, lightbin_reduce_constants* constants);
 
 /* ---- Shaders that make light grids on the GPU of lights there ---- */
@@ -1082,7 +1082,7 @@ LIGHTBIN_API lightbin_result lightbin_rectangle_sphere(const float centre[3], co
 /* Makes a whole box, such as a decal's or a reflection probe's, with a sphere around its corners.
  *
  * half_axes  three vectors, one after another, from the centre to the middles of three faces */
-LIGHTBIN_API lightbin_result lightbin_whole_box(const float centre[3], const float half_axes[9],
+LIGHTBIN_API lightbin_result lightbin_oriented_box(const float centre[3], const float half_axes[9],
                                                 lightbin_box* box);
 
 /* Makes a whole box of the image of a cube under an affine transform, as engines keep decals and probes.

@@ -104,7 +104,7 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
 ///
 /// lights, to_light  as for view_space()
 /// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine. If it is so far from a
-///                   rotation and uniform scale that it would distort cones, spots become their least_sphere().
+///                   rotation and uniform scale that it would distort cones, spots become their bounding_sphere().
 template <class Range, class ViewMatrix, class ToLight = AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);

@@ -28,7 +28,7 @@ constexpr const char* to_string(ListStorage value) {
 }
 
 /// What shader_snippet() generates. The text contains code only for what the options ask for.
-struct ShaderOptions {
+struct SnippetOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
     /// The format of the lists: the one given to encode(), or {.ids = Options::ids} for the lists of a Binner itself.
@@ -56,7 +56,7 @@ struct ShaderOptions {
     /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
     /// 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
-    /// Adds the function `check_view`: whether a pixel shows a view-space position. It reads ShaderView, bound at
+    /// Adds the function `check_view`: whether a pixel shows a view-space position. It reads ViewConstants, bound at
     /// `view`.
     bool view_check = false;
     bool list_check = false;  ///< adds the loop `for_each_missing` over the lights that a pixel's list lacks
@@ -69,23 +69,23 @@ struct ShaderOptions {
     std::uint32_t uniform_block_bytes = 16384;  ///< the device's limit for one block; every device allows 16384
 
     ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
-    bool push_constants = false;            ///< Vulkan: ShaderGrid (`grid` and `corner`) is push constants
+    bool push_constants = false;            ///< Vulkan: GridConstants (`grid` and `corner`) is push constants
     std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
 /// The values of the shader's constants `grid` and `corner`. A uniform block and push constants have this layout;
 /// without viewport_corner, its first 16 bytes.
-struct ShaderGrid {
+struct GridConstants {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused[2] = {};
 };
-static_assert(sizeof(ShaderGrid) == 32 && sizeof(ListRange) == 8);  // neither has padding
+static_assert(sizeof(GridConstants) == 32 && sizeof(ListRange) == 8);  // neither has padding
 
 /// Returns the values of the shader's constants for a view. The corner is the least x and y of the viewport's pixels in
-/// the shader's own pixel coordinates; only shaders with ShaderOptions::viewport_corner read it.
-inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
-    const Extent size = view.viewport();
+/// the shader's own pixel coordinates; only shaders with SnippetOptions::viewport_corner read it.
+inline GridConstants grid_constants(const View& view, int corner_x = 0, int corner_y = 0) {
+    const ImageSize size = view.viewport();
     const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
     return {u(view.tile_size()), u(view.tiles_x()), u(size.width), u(size.height), corner_x, corner_y};
 }
@@ -95,14 +95,14 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices);
 
 /// The values of the constants that the shader function `check_view` reads. A uniform block has this layout.
-struct ShaderView {
+struct ViewConstants {
     /// The vec4 constant `image`: a point's pixel is  scale * x / depth + offset;  orthographic:  scale * x + offset.
     float scale_x, scale_y, offset_x, offset_y;
     /// The vec4 constant `depths`: a point's view depth is  forward * z  and must be at least `nearest`; `perspective`
     /// is 1, or 0 in orthographic views; the point may be projected up to `tolerance` pixels away from its pixel.
     float forward, perspective, nearest, tolerance;
 };
-static_assert(sizeof(ShaderView) == 32);  // it has no padding
+static_assert(sizeof(ViewConstants) == 32);  // it has no padding
 
 /// Returns the values of the constants with which the shader's `check_view` checks pixels against a view.
 ///
@@ -111,7 +111,7 @@ static_assert(sizeof(ShaderView) == 32);  // it has no padding
 ///            at depth d, interpolated over a triangle whose corners are at a distance r, is wrong by up to about
 ///            2^-22 r / d of the image's height in pixels. A larger tolerance is only needed where r / d exceeds some
 ///            thousand
-inline ShaderView shader_view(const View& view, float tolerance = 2) {
+inline ViewConstants view_constants(const View& view, float tolerance = 2) {
     const detail::Camera& camera = detail::camera_of(view);
     const auto pixels = [&](double tiles) { return static_cast<float>(tiles * view.tile_size()); };
     const auto scale = [&](const detail::ImageAxis& axis) {
@@ -173,7 +173,7 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///
 /// The buffers of tiles, lists and bins hold the data of view 0, then of view 1, and so on, as LightGrid::copy_to()
 /// writes tiles and lists. All views have the same `grid`, `corner` and slices. The list of a view whose number is
-/// options.views or more is empty. `check_view` has one array `image` of constants: each view's ShaderView in turn.
+/// options.views or more is empty. `check_view` has one array `image` of constants: each view's ViewConstants in turn.
 ///
 /// With masks the lights come in the order of LightMasks::ids(), which with z_bins is that of depth, and light.id is the
 /// position in the caller's array. Masks are of one view and have no clusters.
@@ -184,9 +184,9 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     lightbin_for_each_missing(light, light_count, pixel, depth) { if (shade(light.id) > 0) colour = magenta; }
 ///
 /// lightbin_check_view tells whether the View projects `position`, in view space, into this pixel (within the tolerance
-/// of shader_view()) and not before its near plane. lightbin_for_each_missing loops over every id below light_count
+/// of view_constants()) and not before its near plane. lightbin_for_each_missing loops over every id below light_count
 /// that the pixel's list lacks, which is slow; no `else` can follow its body.
-inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {});
+inline Result<ShaderText> shader_snippet(const SnippetOptions& options = {});
 
 }}  // namespace lightbin
 

@@ -13,22 +13,22 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Returns the text of one pass, a whole compute shader except for `#version`, with the buffers to bind; or an
 /// Error that names the limit that the options exceed. The name of a binding is the prefix, the buffer's name in
-/// CullShaderOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
+/// CullOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
 ///
 /// After cull_passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(): the shader text of
 /// shader_snippet() reads them. No light that reaches a cell is missing in its list, on the conditions of
 /// docs/limits.md, and ids ascend. Lists also have lights that do not reach the cell, a few others than the Binner's:
 /// see docs/gpu.md. The same input gives the same bytes on every run.
 ///
-/// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
+/// If the lists have more entries than there is room for (CullCapacity::entries), those that do not fit are left out:
 /// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is
 /// what was needed.
 ///
 /// After cull_mask_passes, the buffer `lists` holds LightMasks::words() without bins, for the shader text with
-/// ShaderOptions::masks. There ids()[i] is i for all lights that there is room for, and lights out of view have no bits.
+/// SnippetOptions::masks. There ids()[i] is i for all lights that there is room for, and lights out of view have no bits.
 /// Columns and rows have the lights of a MaskBinner, and the few more that lists have. The depth test and clusters have
 /// no part in masks.
-inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& options = {});
+inline Result<ShaderText> cull_shader(CullPass pass, const CullOptions& options = {});
 
 /// Returns the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport,
 /// the tile size or the room, only CullPlan::constants changes.
@@ -43,7 +43,7 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
 /// slices; too many lights for the ids; `scratch` or the masks would have more than 2^32 - 1 words.
-inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
+inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, const CullCapacity& room,
                                   const Slices* slices = nullptr, const Matrix* to_view = nullptr);
 
 /// Returns the two sides of each tile column and then of each tile row, which the passes read with a depth test.

@@ -15,7 +15,7 @@ constexpr const char* to_string(ShaderStage value) {
 }
 
 /// What reduce_shader() generates.
-struct ReduceShaderOptions {
+struct ReduceOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ShaderStage stage = ShaderStage::compute;
     int samples = 1;            ///< samples per pixel of the depth texture, 1 to 8
@@ -33,18 +33,18 @@ struct ReduceShaderOptions {
 
 /// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout;
 /// without viewport_corner, its first 32 bytes.
-struct ShaderReduce {
+struct ReduceConstants {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     float far_end, slope, margin, unused;             ///< planes
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused_corner[2] = {};
 };
-static_assert(sizeof(ShaderReduce) == 48);
+static_assert(sizeof(ReduceConstants) == 48);
 
 /// Returns the values of the constants of reduce_shader() for a view. The corner is the texel of the depth texture at
-/// the viewport's first column and row; only shaders with ReduceShaderOptions::viewport_corner read it.
-inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
-    const ShaderGrid grid = shader_grid(view);
+/// the viewport's first column and row; only shaders with ReduceOptions::viewport_corner read it.
+inline ReduceConstants reduce_constants(const View& view, int corner_x = 0, int corner_y = 0) {
+    const GridConstants grid = grid_constants(view);
     // Let e be the distance of a window depth from the far plane's: 1 - depth, or with reversed Z the depth itself. A
     // perspective view depth is  1 / (far_end + slope e)  with far_end = 1 / far and slope = 1 / near - 1 / far:
     // positive terms, so nothing cancels. With far_end = far and slope = far - near, an orthographic one is
@@ -68,7 +68,7 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
 ///           texels of two 32-bit floats, row 0 of which is row 0 of the tiles
 ///
 /// Source: Tiled Shading, section 6.3.
-inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {});
+inline Result<ShaderText> reduce_shader(const ReduceOptions& options = {});
 
 }}  // namespace lightbin
 

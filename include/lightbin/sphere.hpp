@@ -81,7 +81,7 @@ inline float light_range(float intensity, float cutoff) {
 /// Returns the factor by which to multiply a light so that it fades smoothly to nothing at its range: 1 at the light,
 /// (1 - (distance / range)^4)^2 in between, and exactly 0 from the range on (Karis, Real Shading in Unreal Engine 4,
 /// SIGGRAPH 2013). Without such a window the light that is left at the range is cut off at tile borders, and seams
-/// show. With ShaderOptions::window shaders get a function for the same factor. Range +inf gives 1.
+/// show. With SnippetOptions::window shaders get a function for the same factor. Range +inf gives 1.
 inline float light_window(float distance, float range) {
     if (!(distance < range)) return 0;
     const float x = distance / range, w = 1 - x * x * x * x;

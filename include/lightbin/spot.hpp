@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots (least_sphere()),
+// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots (bounding_sphere()),
 // tubes and rectangles.
 #pragma once
 

@@ -30,7 +30,7 @@ constexpr const char* to_string(WindowOrigin origin) {
 }
 
 /// Width and height in pixels.
-struct Extent {
+struct ImageSize {
     int width = 0;
     int height = 0;
 };
@@ -82,7 +82,7 @@ public:
     ///             Orthographic ones may be centred or not.
     /// viewport    0 to max_side pixels a side. An empty viewport has no tiles.
     template <class Matrix>
-    static Result<View> from_projection(const Matrix& projection, Extent viewport,
+    static Result<View> from_projection(const Matrix& projection, ImageSize viewport,
                                         const ViewOptions& options = {}) {
         return make(detail::to_matrix(projection), viewport, options);
     }
@@ -93,7 +93,7 @@ public:
         return make(projection_.matrix, viewport_, {tile_size, clip_depth, origin_, reversed_z()});
     }
 
-    Extent viewport() const { return viewport_; }
+    ImageSize viewport() const { return viewport_; }
     int tile_size() const { return tile_size_; }
     int tiles_x() const { return projection_.camera.x.tiles; }
     int tiles_y() const { return projection_.camera.y.tiles; }
@@ -161,7 +161,7 @@ private:
 
     View() = default;
 
-    static Result<View> make(const Matrix& matrix, Extent viewport, const ViewOptions& options) {
+    static Result<View> make(const Matrix& matrix, ImageSize viewport, const ViewOptions& options) {
         for (const int side : {viewport.width, viewport.height})
             if (side < 0 || side > max_side)
                 return Error{ErrorCode::viewport_out_of_range, static_cast<std::uint64_t>(side), max_side};
@@ -190,7 +190,7 @@ private:
     }
 
     detail::Projection projection_;
-    Extent viewport_;
+    ImageSize viewport_;
     int tile_size_ = 1;
     WindowOrigin origin_ = WindowOrigin::lower_left;
 };

@@ -87,7 +87,7 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
 inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                                     Isa isa = compiled_isa) {
     const detail::DefaultFloatEnvironment environment;
-    const Extent viewport = view.viewport();
+    const ImageSize viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
         return Error{ErrorCode::samples_out_of_range, static_cast<std::uint64_t>(buffer.samples), 8};

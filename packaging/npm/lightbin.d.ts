@@ -78,11 +78,11 @@ export interface View extends Disposable {
     /** Returns the window depth of a view depth, up to rounding; NaN for an infinite view depth. */
     windowDepth(depth: number): number;
     /** The constants `grid` (four numbers) and `corner` (two) of the shader text, as in its uniform block. */
-    shaderGrid(cornerX?: number, cornerY?: number): Uint32Array;
+    gridConstants(cornerX?: number, cornerY?: number): Uint32Array;
     /** The constants `image` and `depths` of the shader text's view check. */
-    shaderView(tolerance?: number): Float32Array;
+    viewConstants(tolerance?: number): Float32Array;
     /** The constants of reduceShader(): the words of its uniform block, of which the second four are floats (`planes`). */
-    shaderReduce(cornerX?: number, cornerY?: number): Uint32Array;
+    reduceConstants(cornerX?: number, cornerY?: number): Uint32Array;
     /** What cullShader() reads with `box`, after the Z bounds: the sides of columns and rows of tiles. */
     shaderEdges(): Float32Array;
 }
@@ -206,7 +206,7 @@ export interface Grid {
     encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
     /**
      * Writes the lists of several views, this grid's first, one view after another, for shaders made with
-     * ShaderOptions.views: offsets count from the beginning of `ids`. The grids have the same numbers of tiles and
+     * SnippetOptions.views: offsets count from the beginning of `ids`. The grids have the same numbers of tiles and
      * slices and ids of the same width, and each is of a binner of its own, as a binner's next call ends its lists.
      * Order and bins of z-bins are not appended. The arrays hold as the data of encode() do.
      */
@@ -263,7 +263,7 @@ export interface Slot {
 type Language = 'essl-300' | 'wgsl' | 'essl-310' | 'glsl-330' | 'glsl-430' | 'glsl-vulkan' | 'hlsl-5-0' | 'hlsl-5-1';
 
 /** docs/shader.md explains each member at length. */
-export interface ShaderOptions {
+export interface SnippetOptions {
     language: Language;
     /** texture-2d or uniform-block for WebGL 2. Default: storage-buffer. */
     storage?: 'storage-buffer' | 'texel-buffer' | 'texture-2d' | 'uniform-block' | 'byte-address';
@@ -299,7 +299,7 @@ export interface ShaderOptions {
 }
 
 /** A shader that reduces a depth texture to Z bounds. Defaults: a compute shader, one sample, 32-bit floats. */
-export interface ReduceShaderOptions {
+export interface ReduceOptions {
     language: Language;
     fragment?: boolean;
     samples?: number;
@@ -319,7 +319,7 @@ export interface ReduceShaderOptions {
 export type CullPass = 'project' | 'count' | 'sums' | 'offsets' | 'fill' | 'masks';
 
 /** All passes need the same options except for `pass`. docs/gpu.md explains them and the buffers. */
-export interface CullShaderOptions {
+export interface CullOptions {
     language: Language;
     pass?: CullPass;
     kind?: 'sphere' | 'spot';
@@ -346,7 +346,7 @@ export interface CullShaderOptions {
 }
 
 /** What the buffers have room for, and what the options ask for. */
-export interface CullRoom {
+export interface CullCapacity {
     /** The number of lights, with countInBuffer the greatest. */
     lights: number;
     /** Ids that fit in the buffer `lists`. */
@@ -403,13 +403,13 @@ export interface Lightbin {
     linearSlices(options: {count: number, begin: number, end: number, margin?: number}): Slices;
     slicesFromBoundaries(options: {boundaries: Numbers, margin?: number}): Slices;
     /** Makes shader text that reads the lists, to be inserted after `#version`. The first call loads shaders.wasm. */
-    shader(options: ShaderOptions): Promise<ShaderText>;
+    shader(options: SnippetOptions): Promise<ShaderText>;
     /** Makes a whole shader, but for `#version`: docs/shader.md says what its buffers hold, and how to dispatch it. */
-    reduceShader(options: ReduceShaderOptions): Promise<ShaderText>;
-    cullShader(options: CullShaderOptions): Promise<ShaderText>;
+    reduceShader(options: ReduceOptions): Promise<ShaderText>;
+    cullShader(options: CullOptions): Promise<ShaderText>;
     /** Returns the constants, buffer sizes and dispatches of cullShader() for a view. Where only the camera moves, only
      * the constants change. The first call loads shaders.wasm. */
-    planCull(view: View, options: CullShaderOptions, room: CullRoom): Promise<CullPlan>;
+    planCull(view: View, options: CullOptions, room: CullCapacity): Promise<CullPlan>;
     /** Returns what was read from a view's matrix as one line of text, with a question for each likely mistake. For
      * development: it loads shaders.wasm. */
     viewText(view: View): Promise<string>;

@@ -455,16 +455,16 @@ class View extends Held {
     windowDepth(depth) {
         return this.#core.c.lightbin_view_window_depth(this[address], real(depth, 'depth'));
     }
-    shaderGrid(corner_x = 0, corner_y = 0) {
-        return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_shader_grid,
+    gridConstants(corner_x = 0, corner_y = 0) {
+        return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_get_grid_constants,
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
     }
-    shaderView(tolerance = 2) {
-        return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_shader_view,
+    viewConstants(tolerance = 2) {
+        return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_get_view_constants,
                                real(tolerance, 'tolerance'));
     }
-    shaderReduce(corner_x = 0, corner_y = 0) {
-        return this.#constants(Uint32Array, 'reduceConstants', this.#core.c.lightbin_shader_reduce,
+    reduceConstants(corner_x = 0, corner_y = 0) {
+        return this.#constants(Uint32Array, 'reduceConstants', this.#core.c.lightbin_get_reduce_constants,
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
     }
     shaderEdges() {

@@ -238,7 +238,7 @@ export class ClusteredLights {
         }, {slices: picture.slices}];
         if (this.#options.masks) this.#upload_masks(picture, this.masks = this.#binner.masks(...given));
         else this.#upload_lists(picture, this.grid = this.#binner.bin(...given));
-        picture.grid = this.#view.shaderGrid().subarray(0, 4);
+        picture.grid = this.#view.gridConstants().subarray(0, 4);
         const floats = picture.floats.array;  // read anew, as the module's memory may have grown
         this.#upload(picture, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
     }

@@ -449,7 +449,7 @@ static void test_shapes(void) {
     NEEDS(lightbin_box_sphere(&box, NULL), "sphere");
     NEEDS(lightbin_tube_sphere(a, NULL, 1, &sphere), "b");
     NEEDS(lightbin_rectangle_sphere(a, b, NULL, 1, &sphere), "half_y");
-    NEEDS(lightbin_whole_box(a, NULL, &box), "half_axes");
+    NEEDS(lightbin_oriented_box(a, NULL, &box), "half_axes");
     NEEDS(lightbin_cube_box(&cube, 1, NULL), "box");
     NEEDS(lightbin_cube_box(NULL, 1, &box), "transform");
     NEEDS(lightbin_half_sphere(&sphere, NULL, &box), "direction");

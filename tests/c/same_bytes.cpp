@@ -533,14 +533,14 @@ TEST_CASE("C: the data that shaders read is that of C++") {
     const auto view = make_view();
     const auto slices = make_slices();
     lightbin_grid_constants grid;
-    works(lightbin_shader_grid(view.get(), 3, 4, &grid));
-    CHECK(same(grid, shader_grid(cpp_view, 3, 4)));
+    works(lightbin_get_grid_constants(view.get(), 3, 4, &grid));
+    CHECK(same(grid, grid_constants(cpp_view, 3, 4)));
     lightbin_view_constants check;
-    works(lightbin_shader_view(view.get(), 2, &check));
-    CHECK(same(check, shader_view(cpp_view, 2)));
+    works(lightbin_get_view_constants(view.get(), 2, &check));
+    CHECK(same(check, view_constants(cpp_view, 2)));
     lightbin_reduce_constants reduce;
-    works(lightbin_shader_reduce(view.get(), 3, 4, &reduce));
-    CHECK(same(reduce, shader_reduce(cpp_view, 3, 4)));
+    works(lightbin_get_reduce_constants(view.get(), 3, 4, &reduce));
+    CHECK(same(reduce, reduce_constants(cpp_view, 3, 4)));
     CHECK(lightbin_slices_at(slices.get(), 30) == cpp_slices.slice_at(30));
     CHECK(equal(cpp_slices.boundaries(), lightbin_slices_boundaries(slices.get()), 8));
     std::vector<std::uint32_t> words(12);
@@ -562,7 +562,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
     for (int kind = LIGHTBIN_CULL_SPHERE; kind <= LIGHTBIN_CULL_SPOT; ++kind)
         for (const bool all : {false, true}) {
             auto options = sized<lightbin_cull_options>();
-            CullShaderOptions cpp = {.kind = static_cast<CullKind>(kind)};
+            CullOptions cpp = {.kind = static_cast<CullKind>(kind)};
             options.kind = kind;
             if (kind == LIGHTBIN_CULL_SPOT) cpp.lights_at.stride = 8;
             if (all) {
@@ -631,7 +631,7 @@ TEST_CASE("C: shapes are the lights of C++") {
     lightbin_sphere sphere;
     lightbin_box box;
     works(lightbin_spot_sphere(&spot, &sphere));
-    CHECK(same(sphere, least_sphere(Spot{1, 2, -9, 3, 3, 0.5f, -7, 0.8f})));
+    CHECK(same(sphere, bounding_sphere(Spot{1, 2, -9, 3, 3, 0.5f, -7, 0.8f})));
     works(lightbin_tube_sphere(v[0], v[1], 2, &sphere));
     CHECK(same(sphere, tube_sphere(p[0], p[1], 2)));
     works(lightbin_rectangle_sphere(v[0], v[1], v[2], 2, &sphere));
@@ -643,11 +643,11 @@ TEST_CASE("C: shapes are the lights of C++") {
     works(lightbin_projector_box(v[0], v[1], v[2], v[3], 0.25, &box));
     CHECK(same(box, projector_box(p[0], p[1], p[2], p[3], 0.25)));
     works(lightbin_cube_box(&numbers, 0.5, &box));
-    CHECK(same(box, whole_box(matrix(transform, MatrixLayout::row_vectors), 0.5)));
-    const Box whole = whole_box(p[0], p[1], p[2], p[3]);
+    CHECK(same(box, oriented_box(matrix(transform, MatrixLayout::row_vectors), 0.5)));
+    const Box whole = oriented_box(p[0], p[1], p[2], p[3]);
     float half_axes[9];
     std::memcpy(half_axes, v[1], sizeof half_axes);
-    works(lightbin_whole_box(v[0], half_axes, &box));
+    works(lightbin_oriented_box(v[0], half_axes, &box));
     CHECK(same(box, whole));
     box.radius = 1;
     works(lightbin_box_sphere(&box, &sphere));

@@ -261,7 +261,7 @@ void check(const Result<ShaderText>& made, Question question) {
 }
 
 void fuzz_snippet(Bytes& bytes) {
-    ShaderOptions options;
+    SnippetOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.storage = take_enum(bytes, ListStorage::byte_address);
@@ -350,7 +350,7 @@ void fuzz_snippet(Bytes& bytes) {
 }
 
 void fuzz_reduction(Bytes& bytes) {
-    ReduceShaderOptions options;
+    ReduceOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.stage = take_enum(bytes, ShaderStage::fragment);
@@ -379,7 +379,7 @@ void fuzz_reduction(Bytes& bytes) {
 }
 
 /// The buffers of a pass, in the order of its text.
-std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) {
+std::vector<Wanted> buffers_of(CullPass pass, const CullOptions& options) {
     std::vector<Wanted> wanted;
     const auto want = [&](bool condition, const char* name, ShaderSlot slot) {
         if (condition) wanted.push_back({name, slot});
@@ -396,10 +396,10 @@ std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) 
 }
 
 /// The numbers of a plan are those asked for, and its sizes and groups within the limits that its comments state.
-void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions& options,
-                const CullRoom& room, std::uint32_t slices) {
+void check_plan(const CullPlan& plan, const View& view, const CullOptions& options,
+                const CullCapacity& room, std::uint32_t slices) {
     const auto holds = [](bool condition, const char* what) { require(condition, what, ""); };
-    const ShaderCull& made = plan.constants;
+    const CullConstants& made = plan.constants;
     const auto columns = static_cast<std::uint32_t>(view.tiles_x()),
                rows = static_cast<std::uint32_t>(view.tiles_y());
     holds(made.tiles_x == columns && made.tiles_y == rows && made.slices == slices &&
@@ -447,7 +447,7 @@ void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions&
 }
 
 /// Bytes to a view, slices and the rest of what plan_cull() takes.
-void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
+void fuzz_plan(Bytes& bytes, CullOptions options) {
     constexpr float perspective[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}},
                     flat[4][4] = {{0.1f, 0, 0, 0}, {0, 0.1f, 0, 0}, {0, 0, -0.01f, 0}, {0, 0, -1, 1}};
     options.orthographic = bytes.flag();
@@ -455,7 +455,7 @@ void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
     const auto view = View::from_projection(options.orthographic ? flat : perspective, {width, height},
                                             {.tile_size = static_cast<int>(1 + bytes.byte())});
     if (!view) return;
-    const CullRoom room = {take_size(bytes), take_size(bytes)};
+    const CullCapacity room = {take_size(bytes), take_size(bytes)};
     const bool sliced = options.slicing != Slicing::none;
     std::uint32_t count = 1;
     if (sliced) count = 1 + take_size(bytes) % 70'000;
@@ -490,7 +490,7 @@ void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
 }
 
 void fuzz_cull(Bytes& bytes) {
-    CullShaderOptions options;
+    CullOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
     const CullPass pass = take_enum(bytes, CullPass::masks);

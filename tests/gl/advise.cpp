@@ -94,7 +94,7 @@ TEST_CASE("evaluations are those that the renderer counts of the picture that it
 
         // The advice is of the same counts, from a pixel of 16 where it is of slices.
         const lightbin::Advice advice = costs.advise();
-        for (const lightbin::Plan& advised : advice.plans()) {
+        for (const lightbin::AdvicePlan& advised : advice.plans()) {
             if (!advised.tiled || advised.tile_size != 16 || advised.has_z_bounds()) continue;
             for (std::size_t i = 0; i < 4; ++i)
                 if (advised.slicing == ways[i].plan.slicing && advised.depth_test == ways[i].plan.depth_test)

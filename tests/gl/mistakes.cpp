@@ -178,11 +178,11 @@ private:
 
     // All that is not set is 0, as in a program just linked.
     void set_constants(const Setup& setup, const lightbin::View& view) const {
-        const lightbin::ShaderGrid grid = setup.grid_set
-                                              ? lightbin::shader_grid(view, setup.corner[0], setup.corner[1])
-                                              : lightbin::ShaderGrid{};
-        const lightbin::ShaderView image =
-            setup.image_set ? lightbin::shader_view(view) : lightbin::ShaderView{};
+        const lightbin::GridConstants grid = setup.grid_set
+                                              ? lightbin::grid_constants(view, setup.corner[0], setup.corner[1])
+                                              : lightbin::GridConstants{};
+        const lightbin::ViewConstants image =
+            setup.image_set ? lightbin::view_constants(view) : lightbin::ViewConstants{};
         const auto place = [&](const char* name) { return glGetUniformLocation(program_, name); };
         glUniform4uiv(place("lightbin_grid"), 1, &grid.tile_size);
         glUniform2iv(place("lightbin_corner"), 1, &grid.corner_x);

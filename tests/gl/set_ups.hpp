@@ -56,10 +56,10 @@ struct Setup {
     std::array<int, 2> corner = {0, 0};
 
     glm::mat4 given_projection = projection, given_view = view;
-    lightbin::Extent given_size = {width, height};
+    lightbin::ImageSize given_size = {width, height};
     lightbin::ViewOptions view_options = {.tile_size = 8};
     std::vector<lightbin::Sphere> given_lights = lights;
-    lightbin::ShaderOptions shader = {.language = lightbin::ShaderLanguage::glsl_330,
+    lightbin::SnippetOptions shader = {.language = lightbin::ShaderLanguage::glsl_330,
                                       .storage = lightbin::ListStorage::texel_buffer,
                                       .view_check = true,
                                       .list_check = true,

@@ -145,7 +145,7 @@ TEST_CASE("a light without a cone is a whole sphere, and so is one of 90 degrees
     light.spot = true;
     light.direction = {0, -1, 0};
     light.cos_outer = 0;
-    const lightbin::Sphere sphere = least_sphere(spot_of(gpu_light(light, glm::dmat4(1))));
+    const lightbin::Sphere sphere = bounding_sphere(spot_of(gpu_light(light, glm::dmat4(1))));
     CHECK(sphere.y == 2);
     CHECK(sphere.radius == 4);
 }

@@ -63,7 +63,7 @@ struct Input {
     Slices slices;
 
     /// size  times those of test::random_lights()
-    Input(Extent viewport, int tile_size, std::size_t count, float size)
+    Input(ImageSize viewport, int tile_size, std::size_t count, float size)
         : view(test::view(viewport, tile_size)), lights(test::random_lights(count, 7)),
           slices(*Slices::linear(static_cast<int>(count), 0, 40)) {
         for (glm::vec4& light : lights)
@@ -171,7 +171,7 @@ TEST_CASE("what keeps nothing from call to call loses nothing, either") {
     check_function([&] {
         std::uint64_t entries = 0;  // in any order: times differ from call to call
         const auto advice = advise(scene.view, scene.lights, {}, scene.bounds());
-        for (const Plan& plan : advice->plans())
+        for (const AdvicePlan& plan : advice->plans())
             entries += plan.entries;
         return std::to_string(entries);
     });

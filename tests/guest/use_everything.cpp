@@ -118,14 +118,14 @@ void use_coverage(Hash& hash, const View& view, const auto& lights, const std::v
 
 void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& lights) {
     hash.add(shader_edges(view).size());
-    hash.add(shader_reduce(view).height);
+    hash.add(reduce_constants(view).height);
     hash.add(value_of(plan_cull(view, {}, {static_cast<std::uint32_t>(lights.size()), 9})).bytes.scratch);
 }
 
 /// of_plan(plan) returns a number that its options make.
 void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
     double evaluations = 0;  // in any order: which plan is best depends on the machine
-    for (const Plan& plan : advice.plans()) {
+    for (const AdvicePlan& plan : advice.plans()) {
         evaluations += plan.evaluations;
         hash.value += plan.entries;
         if (plan.tiled) hash.value += of_plan(plan);
@@ -136,14 +136,14 @@ void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
 }
 
 void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
-    add_plans(hash, value_of(advise(view, lights, {}, bounds)), [](const Plan& plan) {
+    add_plans(hash, value_of(advise(view, lights, {}, bounds)), [](const AdvicePlan& plan) {
         return with_options(plan, []<Options options> { return sizeof(Binner<options>); });
     });
     const Slices slices = value_of(Slices::exponential(6, 2, 50)).with_margin(0x1p-14f);
     const std::array<float, 6> depths = {1, 3, 10, 20, 40, 80};
     const auto advice = advise_slices(view, lights, {.clusters = slices, .z_bins = slices},
                                       {.depths = depths, .size = {3, 2}});
-    add_plans(hash, value_of(advice), [&](const Plan& plan) {
+    add_plans(hash, value_of(advice), [&](const AdvicePlan& plan) {
         return with_sliced_options(plan, [&]<Options options> {
             Binner<options> binner;
             return value_of(binner.bin(view, lights, inputs_for<options>({}, slices))).ids().size();
@@ -156,7 +156,7 @@ void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.viewport().width));
     hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) +
              (view.reversed_z() ? 16u : 0u));
-    hash.add(shader_grid(view).tiles_x);
+    hash.add(grid_constants(view).tiles_x);
     const ImagePoint place = view.image_point({1, 2, -3});
     const ViewPoint back = view.view_point(place);
     if (const auto tile = view.tile_at(place)) hash.add(static_cast<std::uint64_t>(tile->x));
@@ -212,10 +212,10 @@ void use_view(Hash& hash, const View& view) {
     use_binner<Options{.ids = IdWidth::u16, .depth_test = true}>(hash, view, spheres, bounds);
     const std::vector<Spot> spots = {to_spot(vectors[0]), to_spot(vectors[1]), Spot::whole(spheres[2])};
     const glm::vec3 up(0, 1, 0), along(0, 0, -1);
-    const std::vector<Box> boxes = {whole_box(corner, side, up, along),
-                                    whole_box(camera, 0.5),
+    const std::vector<Box> boxes = {oriented_box(corner, side, up, along),
+                                    oriented_box(camera, 0.5),
                                     half_sphere(spheres[3], up),
-                                    clipped_sphere(spheres[4], whole_box(corner, side, up, along)),
+                                    clipped_sphere(spheres[4], oriented_box(corner, side, up, along)),
                                     projector_box(corner, along, side, up, 0.1),
                                     tube_box(corner, side, 2)};
     const auto all = lights(spheres, spots, world_space(boxes, camera));
@@ -237,7 +237,7 @@ void use_view(Hash& hash, const View& view) {
 
 std::uint64_t UNIT() {
     Hash hash;
-    const Extent viewport{200, 120};
+    const ImageSize viewport{200, 120};
     // Written out, because what glm computes may differ with the flags.
     const glm::mat4 opengl(1.2f, 0, 0, 0, 0, 1.8f, 0, 0, 0, 0, -1.01f, -1, 0, 0, -0.2f, 0);
     const glm::dmat4 reversed(1.2, 0, 0, 0, 0, 1.8, 0, 0, 0.1, 0.2, 0, -1, 0, 0, 0.1, 0);

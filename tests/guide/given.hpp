@@ -29,7 +29,7 @@ struct Lamp {
 
 struct Camera {
     glm::mat4 projection, world_to_view;
-    lightbin::Extent size;
+    lightbin::ImageSize size;
 };
 
 struct Decal {

@@ -18,7 +18,7 @@ namespace hunt {
 struct Camera {
     glm::dmat4 matrix = glm::dmat4(0);
     bool in_float = false;  ///< the matrix is given as floats, and its entries are such
-    lightbin::Extent viewport;
+    lightbin::ImageSize viewport;
     lightbin::ViewOptions options;
     bool orthographic = false;
     long double toward = -1;             ///< view depth = toward * z
@@ -101,7 +101,7 @@ inline void set_grid(Camera& camera, Random& random) {
     };
     constexpr int most_tiles = 70'000;
     const int first = side(most_tiles), across = side(most_tiles / (first / size + 1));
-    camera.viewport = random.coin() ? lightbin::Extent{first, across} : lightbin::Extent{across, first};
+    camera.viewport = random.coin() ? lightbin::ImageSize{first, across} : lightbin::ImageSize{across, first};
 }
 
 /// Where a point of view space is seen.

@@ -318,7 +318,7 @@ private:
         if (!grid) {
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries &&
-                grid.error().code != ErrorCode::too_many_list_places)
+                grid.error().code != ErrorCode::too_many_pairs)
                 fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
             return;
         }

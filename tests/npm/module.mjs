@@ -100,13 +100,13 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     same(Float64Array.of(view.windowDepth(7)), 'window depth');
     for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
     same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
-    same(view.shaderGrid(5, 7), 'grid constants');
-    same(view.shaderView(1.5), 'view constants');
+    same(view.gridConstants(5, 7), 'grid constants');
+    same(view.viewConstants(1.5), 'view constants');
     same(slices.shaderWords(), 'words of slices');
     assert.equal(await lightbin.viewText(view), Buffer.from(block()).toString());
     same(view.shaderEdges(), 'edges');
     same(slices.shaderSlabs(), 'slabs');
-    same(view.shaderReduce(3, 5), 'constants of a reduction');
+    same(view.reduceConstants(3, 5), 'constants of a reduction');
     const text = () => Buffer.from(block()).toString();
     for (const options of [{language: 'wgsl'}, {language: 'essl-300', fragment: true}])
         assert.equal((await lightbin.reduceShader({...options, skipBackground: true})).text, text());
@@ -269,8 +269,8 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => view.depths('0', 1), /^lower: 0 is no number$/],
             [() => view.project([1, 2n, 3]), /^point: element 1 is no number$/],
             [() => view.project([1, 2]), /^point must be an array of 3/],
-            [() => view.shaderView(Symbol('2')), /^tolerance: /],
-            [() => view.shaderGrid(0.5), /^cornerX: 0.5 is no whole number/],
+            [() => view.viewConstants(Symbol('2')), /^tolerance: /],
+            [() => view.gridConstants(0.5), /^cornerX: 0.5 is no whole number/],
             [() => lightbin.binner({slicing: 'toString'}), /is none of no-slicing, clusters, z-bins$/],
             [() => lightbin.binner({slicing: Symbol('clusters')}), /'Symbol\(clusters\)' is none of/],
             [() => lightbin.binner({depthTest: 'box'}), /^options.depthTest: box is no whole number/],
@@ -363,7 +363,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
         for (const made of [view, huge, slices, binner, sliced, tested]) made.dispose();
         assert.equal(lightbin.allocations, 0);
         assert.throws(() => binner.bin(view, lights), {code: 'null-argument', message: /^binner: /});
-        assert.throws(() => view.shaderGrid(), {code: 'null-argument'});
+        assert.throws(() => view.gridConstants(), {code: 'null-argument'});
         await assert.rejects(lightbin.shader({language: 'basic'}), {code: 'not-a-value',
             message: /'basic' is none of glsl-430/});
         await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
@@ -397,10 +397,10 @@ test('each option and value that a sentence offers is in lightbin.d.ts, and each
         ViewOptions: more => lightbin.view({...square, ...more}), BinnerOptions: more => lightbin.binner(more),
         Lights: more => binner.bin(view, {viewMatrix, ...more}), Inputs: more => binner.bin(view, {}, more),
         ZBounds: more => binner.bin(view, {}, {bounds: more}), ListFormat: more => grid.encode(more),
-        ShaderOptions: more => lightbin.shader({language, ...more}), LoadOptions: more => load(more),
-        ReduceShaderOptions: more => lightbin.reduceShader({language, ...more}),
-        CullShaderOptions: more => lightbin.cullShader({language, ...more}),
-        CullRoom: more => lightbin.planCull(view, {language}, {lights: 1, entries: 1, viewMatrix, ...more}),
+        SnippetOptions: more => lightbin.shader({language, ...more}), LoadOptions: more => load(more),
+        ReduceOptions: more => lightbin.reduceShader({language, ...more}),
+        CullOptions: more => lightbin.cullShader({language, ...more}),
+        CullCapacity: more => lightbin.planCull(view, {language}, {lights: 1, entries: 1, viewMatrix, ...more}),
     })) {
         const message = async more => (await Promise.resolve(more).then(ask).catch(error => error)).message;
         const offered = new Set((await message(nonsense))?.match(/there is no 'nonsense', but (.*)/)?.[1].split(', '));

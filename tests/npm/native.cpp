@@ -203,10 +203,10 @@ int main(int count, char** names) {
 
     // What shaders read of views and slices.
     lightbin_grid_constants grid_constants = {};
-    succeed(lightbin_shader_grid(view, 5, 7, &grid_constants));
+    succeed(lightbin_get_grid_constants(view, 5, 7, &grid_constants));
     write_block(&grid_constants, sizeof grid_constants);
     lightbin_view_constants view_constants = {};
-    succeed(lightbin_shader_view(view, 1.5f, &view_constants));
+    succeed(lightbin_get_view_constants(view, 1.5f, &view_constants));
     write_block(&view_constants, sizeof view_constants);
     std::uint32_t words[17 + 3];
     succeed(lightbin_shader_slices(slices, words, 17 + 3));
@@ -222,7 +222,7 @@ int main(int count, char** names) {
     succeed(lightbin_shader_slabs(slices, edges, WIDTH, &written));
     write_block(edges, written * sizeof *edges);
     lightbin_reduce_constants reduce = {};
-    succeed(lightbin_shader_reduce(view, 3, 5, &reduce));
+    succeed(lightbin_get_reduce_constants(view, 3, 5, &reduce));
     write_block(&reduce, sizeof reduce);
     lightbin_shader* shader = nullptr;
     for (const int fragment : {0, 1}) {

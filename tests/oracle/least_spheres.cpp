@@ -87,7 +87,7 @@ TEST_CASE("the least sphere of a spot holds it, and is the least but for roundin
     int smaller = 0, outside = 0, larger = 0;
     for (int i = 0; i < 200000; ++i) {
         const lightbin::Spot spot = random_spot(random);
-        const lightbin::Sphere least = lightbin::least_sphere(spot);
+        const lightbin::Sphere least = lightbin::bounding_sphere(spot);
         REQUIRE(good(least));
         REQUIRE(least.radius <= spot.radius);
         smaller += least.radius < spot.radius;

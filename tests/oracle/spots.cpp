@@ -41,7 +41,7 @@ struct Spots {
     static const std::vector<SpotSet>& sets() { return spot_sets(); }
     static oracle::Light ball(const SpotLight& light) { return light.ball; }
     static std::vector<lightbin::Spot> to_library(const std::vector<SpotLight>& lights) { return as_spots(lights); }
-    static lightbin::Sphere least(const lightbin::Spot& spot) { return least_sphere(spot); }
+    static lightbin::Sphere least(const lightbin::Spot& spot) { return bounding_sphere(spot); }
 
     static void check(const Tally&) {}
 

@@ -251,7 +251,7 @@ void add_encodings(Hash& hash, const LightGrid<std::uint32_t>& grid) {
 template <Options options> class Builder {
 public:
     std::uint64_t hash(const Scene& scene, std::size_t number, const Parallel& parallel) {
-        const auto to_sphere = [](const Lamp& lamp) { return least_sphere(lamp.spot); };
+        const auto to_sphere = [](const Lamp& lamp) { return bounding_sphere(lamp.spot); };
         const auto to_spot = [](const Lamp& lamp) { return lamp.spot; };
         // Products alone, as a compiler may fuse them with sums.
         const auto to_box = [](const Lamp& lamp) {

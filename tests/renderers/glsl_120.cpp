@@ -84,7 +84,7 @@ template <class Elements> void bind(int unit, GLenum format, const Elements& ele
 
 /// Draws a floor and pillars as programs of GLSL 1.20's time do.
 std::vector<std::uint8_t> draw(const FrameBuffer& target, GLuint program,
-                               const lightbin::ShaderGrid& constants, const glm::mat4& projection,
+                               const lightbin::GridConstants& constants, const glm::mat4& projection,
                                const glm::mat4& camera) {
     glUseProgram(program);
     const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
@@ -176,7 +176,7 @@ int main(int, char** words) {
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, light_count, 0, GL_RGBA, GL_FLOAT, lights.data());
 
     const auto picture = [&](GLuint program) {
-        return draw(target, program, lightbin::shader_grid(*view), projection, camera);
+        return draw(target, program, lightbin::grid_constants(*view), projection, camera);
     };
     const std::vector<std::uint8_t> all = picture(every(light_count));
     const auto bright =

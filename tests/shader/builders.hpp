@@ -19,15 +19,15 @@
 #include <string>
 #include <vector>
 
-inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::ShaderLanguage language) {
+inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLanguage language) {
     using namespace lightbin;
-    std::vector<ReduceShaderOptions> every;
+    std::vector<ReduceOptions> every;
     for (const ShaderStage stage : {ShaderStage::compute, ShaderStage::fragment})
         for (const int samples : {1, 4})
             for (const DepthFormat format :
                  {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
                 for (unsigned switches = 0; switches < 64; ++switches) {
-                    ReduceShaderOptions options;
+                    ReduceOptions options;
                     options.language = language;
                     options.stage = stage;
                     options.samples = samples;
@@ -136,7 +136,7 @@ struct BuiltScene {
 
 /// A reduction of a random depth buffer. The result must hold what reduce_depth() allows for, and exceed it
 /// by no more than a few times the float's and the format's step.
-inline Job reduce_job(lightbin::ReduceShaderOptions options, int camera, int width, int height,
+inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, int height,
                       int tile_size) {
     using namespace lightbin;
     const View view = builder_view(camera, width, height, tile_size, options.flip_y);
@@ -180,7 +180,7 @@ inline Job reduce_job(lightbin::ReduceShaderOptions options, int camera, int wid
     BuilderData data;
     data.put("depth", texels);
     data.put("z_bounds", std::vector<float>(2 * (std::max)(min.size(), std::size_t{2}), -1.0f));
-    const ShaderReduce constants = shader_reduce(view, corner_x, corner_y);
+    const ReduceConstants constants = reduce_constants(view, corner_x, corner_y);
     constexpr const char* names[] = {"grid", "planes", "corner"};
     data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
     Job job = builder_job(*reduce_shader(options), options.language, options.prefix, data, "z_bounds");
@@ -241,7 +241,7 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
                  {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
                 for (const bool skip : {false, true})
                     for (int camera = 0; camera < camera_count; ++camera) {
-                        ReduceShaderOptions options;
+                        ReduceOptions options;
                         options.language = language;
                         options.stage = stage;
                         options.samples = samples;

@@ -121,7 +121,7 @@ void compile_language(Compiler& compiler, ShaderLanguage language, std::set<std:
 /// are as `prefixes` has them.
 std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
                                 const std::set<std::string>& names, const std::vector<std::string>& words) {
-    lightbin::ShaderOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
+    lightbin::SnippetOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
     const std::string longest(1000, 'a');
     options.prefix = longest;
     if (language != ShaderLanguage::wgsl)

@@ -17,7 +17,7 @@
 /// A pass and its options.
 struct CullText {
     lightbin::CullPass pass;
-    lightbin::CullShaderOptions options;
+    lightbin::CullOptions options;
 
     lightbin::ShaderText shader() const { return *lightbin::cull_shader(pass, options); }
 };
@@ -31,7 +31,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
             for (unsigned switches = 0; switches < 64; ++switches)
                 for (int i = 0; i <= static_cast<int>(CullPass::masks); ++i) {
                     const auto pass = static_cast<CullPass>(i);
-                    CullShaderOptions options;
+                    CullOptions options;
                     options.language = language;
                     options.slicing = slicing;
                     options.depth_test = depth_test;
@@ -55,7 +55,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
 struct CullCase {
     std::string name;
     lightbin::View view;
-    lightbin::CullShaderOptions options;
+    lightbin::CullOptions options;
     std::vector<std::uint32_t> lights;
     std::uint32_t count = 0;
     std::uint32_t room = 0;  // list entries
@@ -93,7 +93,7 @@ struct CulledGrid {
 };
 
 /// With the number of lights in a buffer, there is room for more than are given.
-inline lightbin::CullRoom room_of(const CullCase& scene) {
+inline lightbin::CullCapacity room_of(const CullCase& scene) {
     return {scene.count + (scene.options.count_in_buffer ? 40 : 0), scene.room};
 }
 
@@ -280,7 +280,7 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
 /// the lights whose bits its column and its row have, in ascending order.
 template <class Device> bool read_masks(Device& device, const CullCase& scene, const CulledGrid& grid) {
     using namespace lightbin;
-    const ShaderOptions options = {.language = scene.options.language, .masks = true, .prefix = scene.options.prefix};
+    const SnippetOptions options = {.language = scene.options.language, .masks = true, .prefix = scene.options.prefix};
     const ShaderText snippet = *shader_snippet(options);
     const auto columns = static_cast<std::size_t>(scene.view.tiles_x()), each = std::size_t{grid.masks[0]};
     Job job;
@@ -291,7 +291,7 @@ template <class Device> bool read_masks(Device& device, const CullCase& scene, c
     job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
     job.text = reader_text(options, snippet, Stage::compute, job.width, job.height);
     BuilderData data;
-    const ShaderGrid constants = shader_grid(scene.view);
+    const GridConstants constants = grid_constants(scene.view);
     data.put("grid", std::span(&constants, 1));
     data.put("masks", grid.masks);
     for (const ShaderBinding& binding : snippet.bindings)

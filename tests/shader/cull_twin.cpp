@@ -128,7 +128,7 @@ void p_mark(uint, uvec2, uvec2, uvec2) {}
 
 using namespace lightbin;
 
-void set_constants(const ShaderCull& c, double margin) {
+void set_constants(const CullConstants& c, double margin) {
     const auto real = [](auto n) { return Real::exact(n); };
     p_grid = {c.tiles_x, c.tiles_y, 1, 0};
     p_axis_x = {real(c.scale_x), real(c.offset_x),
@@ -202,7 +202,7 @@ struct Tally {
 
 /// Projects lights by the text, under each arithmetic, and compares with the Binner's rectangles.
 template <class Light>
-void compare(const View& view, const CullShaderOptions& options, const std::vector<Light>& made,
+void compare(const View& view, const CullOptions& options, const std::vector<Light>& made,
              const Matrix* to_view, double margin, Tally& tally) {
     Footprints projected;
     const auto project = [&](const auto& by_binner) {
@@ -260,7 +260,7 @@ int main(int count, char** arguments) {
                 spheres.push_back(make.next());
                 spots.push_back(make.next_spot());
             }
-            CullShaderOptions options;
+            CullOptions options;
             options.orthographic = view.orthographic();
             compare(view, options, spheres, nullptr, 1, all);
             compare(view, options, spheres, nullptr, 0.2, narrow);

@@ -8,7 +8,7 @@
 
 int main() {
     for (const std::string name : {"sphere", "world", "flat", "spot"}) {
-        lightbin::CullShaderOptions options;
+        lightbin::CullOptions options;
         options.prefix = "p_";
         options.world_space = name == "world";
         options.orthographic = name == "flat";

@@ -44,12 +44,12 @@ constexpr int beyond = 3;
 
 /// The lights that a check goes through: in large pictures few, as it does so in every pixel. Masks with z-bins are
 /// searched for each of them, and Mesa's llvmpipe ends a shader's loops after 65,535 rounds.
-inline std::uint32_t checked_lights(const lightbin::ShaderOptions& options, std::uint32_t width) {
+inline std::uint32_t checked_lights(const lightbin::SnippetOptions& options, std::uint32_t width) {
     return width > 100 ? 8 : options.masks ? 100 : 3000;
 }
 
 /// How many lights there are.
-inline std::uint32_t reader_light_count(const lightbin::ShaderOptions& options) {
+inline std::uint32_t reader_light_count(const lightbin::SnippetOptions& options) {
     using lightbin::IdWidth;
     if (options.masks) return 2000;
     return options.format.ids == IdWidth::u8 ? 200 : options.format.ids == IdWidth::u16 ? 50000 : 100000;
@@ -60,7 +60,7 @@ constexpr float scale_x = 1.2f, scale_y = 1.7f, view_shift = 0.25f;
 
 class ReaderText {
 public:
-    ReaderText(const lightbin::ShaderOptions& options, Stage stage, std::uint32_t width, std::uint32_t height,
+    ReaderText(const lightbin::SnippetOptions& options, Stage stage, std::uint32_t width, std::uint32_t height,
                bool multiview)
         : options_(options), dialect_{options.language}, stage_(stage), width_(width), height_(height),
           multiview_(multiview), several_(options.views > 1), view_(several_ ? ", view" : "") {}
@@ -245,7 +245,7 @@ private:
                ");\n}\n";
     }
 
-    const lightbin::ShaderOptions& options_;
+    const lightbin::SnippetOptions& options_;
     lightbin::detail::Dialect dialect_;
     Stage stage_;
     std::uint32_t width_, height_;
@@ -253,7 +253,7 @@ private:
     std::string view_;  // the last argument of what takes a view's number
 };
 
-inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
+inline std::string reader_text(const lightbin::SnippetOptions& options, const lightbin::ShaderText& snippet,
                                Stage stage, std::uint32_t width, std::uint32_t height,
                                bool multiview = false) {
     return ReaderText(options, stage, width, height, multiview).around(snippet.text);

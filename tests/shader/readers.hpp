@@ -23,10 +23,10 @@ struct ScreenSize {
 };
 
 /// Every place and writing of the lists that a language has; the other options are as given.
-inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions options) {
+inline std::vector<lightbin::SnippetOptions> every_list(lightbin::SnippetOptions options) {
     using namespace lightbin;
     const detail::Dialect dialect = detail::Dialect{options.language};
-    std::vector<ShaderOptions> every;
+    std::vector<SnippetOptions> every;
     for (const ListStorage storage :
          {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
           ListStorage::uniform_block, ListStorage::byte_address}) {
@@ -60,7 +60,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
 
 constexpr unsigned switch_count = 16;  // sets of the options that are on or off
 
-inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, unsigned switches) {
+inline lightbin::SnippetOptions with_switches(lightbin::SnippetOptions options, unsigned switches) {
     options.prefix = prefixes[(switches + 3 * static_cast<unsigned>(options.language)) % std::size(prefixes)];
     options.flip_y = switches & 1;
     options.viewport_corner = switches & 2;
@@ -75,11 +75,11 @@ inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, un
 
 /// Every list of a language, and where the constants are, with no switch on. Bindings are numbered so that no two kinds
 /// share a number: glslang puts the registers t, u and b of HLSL in one row.
-inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage language,
+inline std::vector<lightbin::SnippetOptions> every_list(lightbin::ShaderLanguage language,
                                                        lightbin::Slicing slicing) {
     const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
     const int set = dialect.spaces ? 1 : 0;
-    lightbin::ShaderOptions options;
+    lightbin::SnippetOptions options;
     options.language = language;
     options.slicing = slicing;
     options.texture_width = 37;  // no power of two
@@ -94,29 +94,29 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     options.bins = {7, set};
     options.view = {8, set};
 
-    std::vector<lightbin::ShaderOptions> every = every_list(options);
+    std::vector<lightbin::SnippetOptions> every = every_list(options);
     options.push_constants = dialect.vulkan;
     if (dialect.vulkan)
-        for (const lightbin::ShaderOptions& list : every_list(options))
+        for (const lightbin::SnippetOptions& list : every_list(options))
             every.push_back(list);
     return every;
 }
 
 /// The lists with wave loops, if the language has them.
-inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLanguage language,
+inline std::vector<lightbin::SnippetOptions> every_wave_list(lightbin::ShaderLanguage language,
                                                             lightbin::Slicing slicing) {
-    std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
-    for (lightbin::ShaderOptions& list : every)
+    std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
+    for (lightbin::SnippetOptions& list : every)
         list.wave_loop = true;
-    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return !shader_snippet(list); });
+    std::erase_if(every, [](const lightbin::SnippetOptions& list) { return !shader_snippet(list); });
     return every;
 }
 
 /// The lists with two views; with waves every second one has wave loops, if the language has them.
-inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
+inline std::vector<lightbin::SnippetOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
-    std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
-    std::erase_if(every, [](const lightbin::ShaderOptions& list) { return list.masks; });
+    std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
+    std::erase_if(every, [](const lightbin::SnippetOptions& list) { return list.masks; });
     for (std::size_t i = 0; i < every.size(); ++i) {
         every[i].views = 2;
         every[i].wave_loop = waves && i % 2 == 1;
@@ -127,21 +127,21 @@ inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::Shader
 
 /// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between
 /// them have every switch on and off; with wave loops one, with two views one.
-inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
+inline std::vector<lightbin::SnippetOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
-    std::vector<lightbin::ShaderOptions> every;
+    std::vector<lightbin::SnippetOptions> every;
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned turn = 0;
-        for (const lightbin::ShaderOptions& list : every_list(language, slicing)) {
+        for (const lightbin::SnippetOptions& list : every_list(language, slicing)) {
             ++turn;
             for (unsigned switches = 0; switches < switch_count; ++switches)
                 if (slicing == Slicing::none || switches == turn % switch_count ||
                     (switches ^ turn % switch_count) == switch_count - 1)
                     every.push_back(with_switches(list, switches));
         }
-        for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
+        for (const lightbin::SnippetOptions& list : every_wave_list(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
-        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, true))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, true))
             every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
@@ -177,7 +177,7 @@ inline void fit_texture(Input& input, int tiles_x) {
 /// unset      the constants of the grid are 0: no pixel has lights
 /// multiview  the views are drawn at once
 template <lightbin::Slicing slicing>
-Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen, bool unset,
+Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& screen, bool unset,
                bool multiview) {
     using namespace lightbin;
     constexpr Options of_binner = {.slicing = slicing};
@@ -185,7 +185,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     std::vector<Binner<of_binner>> binners(options.views);
     const std::vector<Sphere> spheres = reader_lights(reader_light_count(options), options.masks ? 8 : 1);
     std::vector<View> views;
-    std::vector<ShaderView> view_constants;
+    std::vector<ViewConstants> view_constants;
     std::vector<LightGrid<std::uint32_t>> grids;
     std::vector<BinRange> bins;
     for (Binner<of_binner>& binner : binners) {
@@ -194,7 +194,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
             {scale_x, 0, 0, 0}, {0, scale_y, 0, 0}, {aside, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
         views.push_back(*View::from_projection(projection, {screen.width, screen.height},
                                                {.tile_size = screen.tile_size}));
-        view_constants.push_back(shader_view(views.back()));
+        view_constants.push_back(view_constants(views.back()));
         const auto inputs = inputs_for<of_binner>({}, slices);
         grids.push_back(*binner.bin(views.back(), spheres, inputs));
         bins.insert(bins.end(), grids.back().ranks().bins.begin(), grids.back().ranks().bins.end());
@@ -230,7 +230,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.corner = {corner_x, corner_y};
     job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
     job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
-    ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
+    GridConstants constants = grid_constants(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
     MaskBinner mask_binner;
     const auto masks = slicing == Slicing::z_bins ? mask_binner.bin(views[0], spheres, slices)
@@ -292,7 +292,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
 
 /// A run that is not put together yet.
 struct ReaderRun {
-    lightbin::ShaderOptions options;
+    lightbin::SnippetOptions options;
     Stage stage;
     ScreenSize screen;
     bool unset = false, multiview = false;
@@ -310,7 +310,7 @@ struct ReaderRun {
 inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<ReaderRun> runs;
-    const auto add = [&](const lightbin::ShaderOptions& list) {
+    const auto add = [&](const lightbin::SnippetOptions& list) {
         runs.push_back({with_switches(list, static_cast<unsigned>(runs.size()) % switch_count),
                         Stage::fragment,
                         {33, 17, 7},
@@ -318,7 +318,7 @@ inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) 
                         true});
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
-        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, false))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, false))
             add(list);
     }
     return runs;
@@ -339,7 +339,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
     std::vector<ReaderRun> runs;
     const bool computes = lightbin::detail::Dialect{language}.storage_buffers;
     unsigned turn = 0;
-    const auto add_list = [&](const lightbin::ShaderOptions& list, unsigned place, unsigned flip,
+    const auto add_list = [&](const lightbin::SnippetOptions& list, unsigned place, unsigned flip,
                               Stage stage) {
         const auto add = [&](const ScreenSize& screen) {
             turn = (turn + 1) % (switch_count / 2);
@@ -354,13 +354,13 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned place = 0;
-        std::vector<lightbin::ShaderOptions> lists = every_list(language, slicing);
+        std::vector<lightbin::SnippetOptions> lists = every_list(language, slicing);
         if (waves)
-            for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
+            for (const lightbin::SnippetOptions& list : every_wave_list(language, slicing))
                 lists.push_back(list);
-        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, waves))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, waves))
             lists.push_back(list);
-        for (const lightbin::ShaderOptions& list : lists) {
+        for (const lightbin::SnippetOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)
                 for (const Stage stage : {Stage::fragment, Stage::compute})
                     if (stage == Stage::fragment || computes) add_list(list, place, flip, stage);

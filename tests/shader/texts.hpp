@@ -22,7 +22,7 @@ inline Job text_job(std::string name, lightbin::ShaderLanguage language, Stage s
     return job;
 }
 
-inline Job reader_text_job(const lightbin::ShaderOptions& options, Stage stage) {
+inline Job reader_text_job(const lightbin::SnippetOptions& options, Stage stage) {
     lightbin::ShaderText shader = *shader_snippet(options);
     shader.text = reader_text(options, shader, stage, 99, 99);
     Job job = text_job("a snippet", options.language, stage, std::move(shader));
@@ -30,7 +30,7 @@ inline Job reader_text_job(const lightbin::ShaderOptions& options, Stage stage) 
     return job;
 }
 
-inline Job reduction_text_job(const lightbin::ReduceShaderOptions& options) {
+inline Job reduction_text_job(const lightbin::ReduceOptions& options) {
     lightbin::ShaderText shader = *reduce_shader(options);
     shader.text = version_line(options.language) + shader.text;
     Job job = text_job("a reduction", options.language,
@@ -55,14 +55,14 @@ void each_text(lightbin::ShaderLanguage language, const Share& share, const Visi
     const auto add = [&](const auto& make) {
         if (turn++ % share.count == share.first) visit(make());
     };
-    for (const lightbin::ShaderOptions& options : every_reader(language))
+    for (const lightbin::SnippetOptions& options : every_reader(language))
         for (const Stage stage : {Stage::fragment, Stage::compute})
             if (stage == Stage::fragment || dialect.storage_buffers)
                 add([&] { return reader_text_job(options, stage); });
     if (!dialect.webgpu)  // it has no multiview
         for (const ReaderRun& run : multiview_runs(language))
             add([&] { return run.job(); });
-    for (const lightbin::ReduceShaderOptions& options : every_reduction(language))
+    for (const lightbin::ReduceOptions& options : every_reduction(language))
         add([&] { return reduction_text_job(options); });
     for (const CullText& text : every_cull(language))
         add([&] { return cull_text_job(text); });

@@ -20,7 +20,7 @@ namespace {
 constexpr float unbounded = std::numeric_limits<float>::infinity();
 
 /// Ground below the eye up to the horizon, blocks on it, sky above: window depth a pixel.
-std::vector<float> ground_depth(Extent size) {
+std::vector<float> ground_depth(ImageSize size) {
     std::vector<float> depth;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
@@ -43,7 +43,7 @@ struct Bounds {
 
 /// What most cases here are about: ground, and lights on it.
 struct Street {
-    Extent size = {640, 360};
+    ImageSize size = {640, 360};
     View view = test::view(size, 8);
     std::vector<float> depth = ground_depth(size);
     Bounds bounds = Bounds(view, depth);
@@ -73,10 +73,10 @@ constexpr std::int64_t each_100(std::size_t) {
 
 constexpr Options narrow = {.ids = IdWidth::u16, .isa = Isa::scalar};
 
-Advice checked(const Result<Advice>& advice, const Costs& costs) {
+Advice checked(const Result<Advice>& advice, const AdviceCosts& costs) {
     REQUIRE(advice);
     double before = 0;
-    for (const Plan& plan : advice->plans()) {
+    for (const AdvicePlan& plan : advice->plans()) {
         const bool bounded = plan.depth_test && plan.slicing == Slicing::none;
         CHECK(plan.build_ns >= (bounded ? costs.z_bounds_ns : 0));
         CHECK(plan.build_ns < 1e12);
@@ -92,12 +92,12 @@ Advice checked(const Result<Advice>& advice, const Costs& costs) {
     return *advice;
 }
 
-Advice advised(const View& view, const auto& lights, const Costs& costs = {}, const ZBounds& bounds = {}) {
+Advice advised(const View& view, const auto& lights, const AdviceCosts& costs = {}, const ZBounds& bounds = {}) {
     return checked(advise(view, lights, costs, bounds), costs);
 }
 
 Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const View& view, const auto& lights,
-                  const Costs& costs = {}, const ZBounds& bounds = {}) {
+                  const AdviceCosts& costs = {}, const ZBounds& bounds = {}) {
     WoundClock::build_ns = build_ns;
     WoundClock::calls = 0;
     const Advice advice = checked(advise<narrow, WoundClock>(view, lights, costs, bounds), costs);
@@ -108,12 +108,12 @@ Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const View& view,
     return advice;
 }
 
-Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const Street& street, const Costs& costs) {
+Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const Street& street, const AdviceCosts& costs) {
     return advised_on(build_ns, street.view, street.lights, costs, street.bounds.reduced);
 }
 
 /// Returns the sum of lights_at(x, y) of each pixel.
-double evaluations(Extent size, const auto& lights_at) {
+double evaluations(ImageSize size, const auto& lights_at) {
     std::size_t sum = 0;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
@@ -122,7 +122,7 @@ double evaluations(Extent size, const auto& lights_at) {
 }
 
 /// The view depths of ground_depth(), infinity where nothing is.
-std::vector<float> view_depths(const View& view, Extent size) {
+std::vector<float> view_depths(const View& view, ImageSize size) {
     std::vector<float> depths;
     for (const float depth : ground_depth(size))
         depths.push_back(depth < 1 ? view.view_depths(double{depth}, double{depth}).min : unbounded);
@@ -132,13 +132,13 @@ std::vector<float> view_depths(const View& view, Extent size) {
 const Slices a_dozen = *Slices::exponential(12, 2, 60), hundred = *Slices::linear(100, 0, 60);
 
 Advice advised_in_slices(const View& view, const auto& lights, const DepthSamples& samples,
-                         const Costs& costs = {}) {
+                         const AdviceCosts& costs = {}) {
     return checked(advise_slices(view, lights, {.clusters = a_dozen, .z_bins = hundred}, samples, costs),
                    costs);
 }
 
 /// Of the street, on a clock on which each build takes 100 ns.
-Advice advised_in_slices_of(const Street& street, const Costs& costs) {
+Advice advised_in_slices_of(const Street& street, const AdviceCosts& costs) {
     const std::vector<float> depths = view_depths(street.view, street.size);
     WoundClock::build_ns = each_100;
     WoundClock::calls = 0;
@@ -175,7 +175,7 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
     const std::vector<float> depths = view_depths(view, {311, 197});
     // All pixels, and every third row and column of them: those in whose middle the samples are.
     for (const int step : {1, 3}) {
-        const Extent size = {311 / step, 197 / step};
+        const ImageSize size = {311 / step, 197 / step};
         const View of_samples = test::view({size.width * step, size.height * step}, 16);
         std::vector<float> samples;
         for (int y = 0; y < size.height; ++y)
@@ -185,7 +185,7 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
         const Advice advice =
             advised_in_slices(of_samples, lights, {.depths = samples, .size = size}, {.z_bounds_ns = 0});
         CHECK(advice.plans().size() == 5 * 6 + 1);
-        for (const Plan& plan : advice.plans()) {
+        for (const AdvicePlan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(static_cast<int>(plan.slicing));
             const auto sampled = [&](auto lights_of) {
@@ -251,9 +251,9 @@ TEST_CASE("entries and evaluations are those of the plans' grids, of as many sid
         };
         const Advice advice = advised(view, lights, {}, sides_of(bounds));
         // Tiles of 8, 16, 32, 64 and 611 pixels; masks, lists, lists of a depth test.
-        CHECK(std::ranges::count(advice.plans(), true, &Plan::depth_test) == (sides > 0 ? 5 : 0));
-        CHECK(std::ranges::count(advice.plans(), false, &Plan::depth_test) == 5 + 5 + 1);
-        for (const Plan& plan : advice.plans()) {
+        CHECK(std::ranges::count(advice.plans(), true, &AdvicePlan::depth_test) == (sides > 0 ? 5 : 0));
+        CHECK(std::ranges::count(advice.plans(), false, &AdvicePlan::depth_test) == 5 + 5 + 1);
+        for (const AdvicePlan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(plan.depth_test);
             const View own = *view.with_tile_size(plan.tiled ? plan.tile_size : 611);
@@ -314,7 +314,7 @@ TEST_CASE("builds that are disturbed change nothing") {
     };
     const auto steady = [](std::size_t) { return std::int64_t{1'000'000}; };
     for (const double cost : {0.001, 0.01, 0.1, 1.0, 10.0}) {
-        const Plan quiet = advised_on(steady, street.view, street.lights, {.evaluation_ns = cost}).best(),
+        const AdvicePlan quiet = advised_on(steady, street.view, street.lights, {.evaluation_ns = cost}).best(),
                    noisy = advised_on(disturbed, street.view, street.lights, {.evaluation_ns = cost}).best();
         CHECK(noisy.tiled == quiet.tiled);
         CHECK(noisy.tile_size == quiet.tile_size);
@@ -325,7 +325,7 @@ TEST_CASE("builds that are disturbed change nothing") {
 TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
     const Street street;
     constexpr Options base = {.ids = IdWidth::u16, .depth_test = true, .isa = Isa::scalar};
-    const auto check = [](const Plan& plan, const Options& told, const Options& rest) {
+    const auto check = [](const AdvicePlan& plan, const Options& told, const Options& rest) {
         CHECK(told.depth_test == plan.depth_test);
         CHECK(told.slicing == plan.slicing);
         CHECK(told.ids == rest.ids);
@@ -334,12 +334,12 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
     const auto options_of = []<Options options> { return options; };
     const Advice advice = advised(street.view, street.lights, {}, street.bounds.reduced),
                  sliced = advised_in_slices_of(street, {.evaluation_ns = 1});
-    for (const Plan& plan : advice.plans()) {
+    for (const AdvicePlan& plan : advice.plans()) {
         if (!plan.tiled) continue;
         check(plan, with_options<base>(plan, options_of), base);
         check(plan, with_options(plan, options_of), Options());
     }
-    for (const Plan& plan : sliced.plans())
+    for (const AdvicePlan& plan : sliced.plans())
         if (plan.tiled) check(plan, with_sliced_options<base>(plan, options_of), base);
     // What is handed on may be changed, and is not copied.
     int seen = 0;
@@ -350,13 +350,13 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
 
 TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the lists costs what is said") {
     const Street street;
-    const Costs plain = {.evaluation_ns = 1, .z_bounds_ns = 3},
+    const AdviceCosts plain = {.evaluation_ns = 1, .z_bounds_ns = 3},
                 dear = {.evaluation_ns = 1, .z_bounds_ns = 3, .upload_byte_ns = 16, .overdraw = 2.5};
     const auto compare = [&](const Advice& without, const Advice& with, auto bytes_of) {
         REQUIRE(with.plans().size() == without.plans().size());
-        for (const Plan& plan : without.plans()) {
+        for (const AdvicePlan& plan : without.plans()) {
             const auto same = std::ranges::find_if(
-                with.plans(), [&](const Plan& other) { return to_string(other) == to_string(plan); });
+                with.plans(), [&](const AdvicePlan& other) { return to_string(other) == to_string(plan); });
             REQUIRE(same != with.plans().end());
             const bool bounded = plan.depth_test && plan.slicing == Slicing::none;
             CHECK(plan.has_z_bounds() == bounded);
@@ -368,10 +368,10 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
             CHECK(same->upload_ns == 16 * static_cast<double>(bytes_of(plan)));
         }
     };
-    const auto tiles = [&](const Plan& plan) {
+    const auto tiles = [&](const AdvicePlan& plan) {
         return street.view.with_tile_size(plan.tile_size)->tile_count();
     };
-    compare(advised_on(each_100, street, plain), advised_on(each_100, street, dear), [&](const Plan& plan) {
+    compare(advised_on(each_100, street, plain), advised_on(each_100, street, dear), [&](const AdvicePlan& plan) {
         if (plan.masks) return 4 * std::size_t{plan.entries};
         return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
     });
@@ -380,7 +380,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
         return binner.bin(street.view, street.lights, {.slices = hundred})->ranks().order.size();
     }();
     const Advice without = advised_in_slices_of(street, plain), with = advised_in_slices_of(street, dear);
-    compare(without, with, [&](const Plan& plan) -> std::size_t {
+    compare(without, with, [&](const AdvicePlan& plan) -> std::size_t {
         if (!plan.tiled) return 0;
         if (plan.masks) return 4 * std::size_t{plan.entries};
         const std::size_t slices = plan.slicing == Slicing::clusters ? 12 : 1,
@@ -392,7 +392,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
 namespace {
 
 /// Whether a plan has the techniques that verdicts are on, in their order, by its words alone.
-std::vector<bool> techniques_of(const Plan& plan) {
+std::vector<bool> techniques_of(const AdvicePlan& plan) {
     const std::string words = "," + to_string(plan) + ",";
     const auto says = [&](const char* word) { return words.find(word) != words.npos; };
     const bool tested = says(" depth test,"), sliced = says(" clusters,");
@@ -402,14 +402,14 @@ std::vector<bool> techniques_of(const Plan& plan) {
 /// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's,
 /// whose form is tested in tests/gl/advise.sh.
 void check_verdicts(const Advice& advice) {
-    for (const Plan& plan : advice.plans()) {
+    for (const AdvicePlan& plan : advice.plans()) {
         std::string lines;
-        const std::vector<Verdict> verdicts = advice.verdicts(plan);
+        const std::vector<AdviceVerdict> verdicts = advice.verdicts(plan);
         REQUIRE(verdicts.size() == 6);
         for (std::size_t i = 0; i < verdicts.size(); ++i) {
             const auto& [part, keep, other, instead, saved_ns] = verdicts[i];
             double least = HUGE_VAL;
-            for (const Plan& another : advice.plans())
+            for (const AdvicePlan& another : advice.plans())
                 if (techniques_of(another)[i] != keep) least = std::min(least, another.total_ns);
             const bool weighed = least < HUGE_VAL;
             CAPTURE(to_string(plan));
@@ -441,9 +441,9 @@ TEST_CASE("a verdict on each technique tells the cheapest plan that differs in i
     check_verdicts(advised(street.view, std::vector<Sphere>{}));
     std::mt19937 random(4);
     for (int round = 0; round < 100; ++round) {
-        std::vector<Plan> plans;
+        std::vector<AdvicePlan> plans;
         for (int i = 1 + round % 8; i > 0; --i) {
-            Plan plan = {.tiled = random() % 8 != 0, .depth_test = random() % 2 != 0, .tile_size = 8};
+            AdvicePlan plan = {.tiled = random() % 8 != 0, .depth_test = random() % 2 != 0, .tile_size = 8};
             plan.slicing = static_cast<Slicing>(random() % 3);
             plan.masks = random() % 2 != 0;
             plan.total_ns = static_cast<double>(random() % 3'000'000);
@@ -460,17 +460,17 @@ TEST_CASE("any input") {
                                      {0, nan, unbounded, nan}};
     const std::vector<float> nothing(100000, nan), ones(100000, 1.0f), zeros(100000, 0.0f),
         depths = {nan, unbounded, -unbounded, -5, 0, 3e38f};
-    for (const Extent size : {Extent{0, 0}, {0, 50}, {1, 1}, {640, 1}, {300, 200}, {32768, 2}})
+    for (const ImageSize size : {ImageSize{0, 0}, {0, 50}, {1, 1}, {640, 1}, {300, 200}, {32768, 2}})
         for (const int tile : {1, 8, 100, 40000, std::numeric_limits<int>::max()}) {
             const View view = test::view(size, tile);
             advised(view, bad);
             advised(view, std::vector<Sphere>{});
-            for (const Extent samples : {Extent{0, 0}, {-1, -1}, {3, 2}, {1, 1}})
+            for (const ImageSize samples : {ImageSize{0, 0}, {-1, -1}, {3, 2}, {1, 1}})
                 advised_in_slices(view, bad, {.depths = depths, .size = samples});
             advised(view, bad, {}, {.min = nothing, .max = nothing});
             advised(view, bad, {}, {.min = nothing});
             const Advice empty = advised(view, bad, {}, {.min = ones, .max = zeros});
-            for (const Plan& plan : empty.plans())
+            for (const AdvicePlan& plan : empty.plans())
                 CHECK(plan.evaluations == 0);
         }
 

@@ -41,14 +41,14 @@ TEST_CASE("lights that are switched off are no bad input, whatever their other n
     // What makes lights of other shapes leaves them off.
     const glm::vec3 a(1, 2, 3), b(7, 2, 11);
     for (const Sphere& made :
-         {tube_sphere(a, b, -1), rectangle_sphere(a, b, b, -1), least_sphere(spots[0]), bounding_sphere(boxes[0]),
+         {tube_sphere(a, b, -1), rectangle_sphere(a, b, b, -1), bounding_sphere(spots[0]), bounding_sphere(boxes[0]),
           bounding_sphere(half_sphere(spheres[0], a)), bounding_sphere(tube_box(a, b, -1)),
           AsLight()(glm::vec4(0, 0, -5, -1))})
         CHECK(made.radius == -1);
 }
 
 TEST_CASE("an empty viewport") {
-    for (const Extent viewport : {Extent{0, 0}, Extent{0, 540}, Extent{960, 0}}) {
+    for (const ImageSize viewport : {ImageSize{0, 0}, ImageSize{0, 540}, ImageSize{960, 0}}) {
         const View view = test::view(viewport, 16);
         auto lights = test::random_lights(200, 41);
         lights.emplace_back(0, 0, 0, inf);

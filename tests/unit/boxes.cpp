@@ -83,12 +83,12 @@ TEST_CASE("the functions that make boxes contain what they are named after, and 
         if (std::abs(glm::dot(x, glm::cross(y, z))) < 0.01f) continue;  // contains() divides by it
         const glm::vec3 s = random_vector(random);
         const glm::vec3 in_cube = c + s.x * x + s.y * y + s.z * z;
-        const Box whole = whole_box(c, x, y, z);
+        const Box whole = oriented_box(c, x, y, z);
         const glm::mat4 m(glm::vec4(x, 0), glm::vec4(y, 0), glm::vec4(z, 0), glm::vec4(c, 1));
         CHECK(contains(whole, in_cube));
-        CHECK(contains(whole_box(m, 1), in_cube));
-        CHECK(contains(whole_box(m, 0.5), c + 0.5f * (in_cube - c)));
-        CHECK(!contains(whole_box(m, 0.5), c + 0.51f * (x + s.y * y + s.z * z)));
+        CHECK(contains(oriented_box(m, 1), in_cube));
+        CHECK(contains(oriented_box(m, 0.5), c + 0.5f * (in_cube - c)));
+        CHECK(!contains(oriented_box(m, 0.5), c + 0.51f * (x + s.y * y + s.z * z)));
         CHECK(contains(clipped_sphere(ball, whole), in_cube) == (glm::length(in_cube - c) <= radius * 1.001f));
         const Box half = half_sphere(ball, x);
         const glm::vec3 in_ball = c + radius * s / std::max(glm::length(s), 1.0f);
@@ -127,10 +127,10 @@ TEST_CASE("the functions that make boxes lose no light that is as large as float
         boxes.push_back(half_sphere({0, -1e38f, 0, radius}, glm::vec3(1e-45f, most, 0)));
         boxes.push_back(tube_box(zero, far, radius));
         boxes.push_back(tube_box(-far, far, radius));
-        boxes.push_back(clipped_sphere({0, 0, -5, radius}, whole_box(zero, up * most, far, glm::vec3(most, 0, 0))));
+        boxes.push_back(clipped_sphere({0, 0, -5, radius}, oriented_box(zero, up * most, far, glm::vec3(most, 0, 0))));
     }
     boxes.push_back(tube_box(glm::dvec3(0, 0, 1e308), glm::dvec3(0, 0, -1e308), 1e38f));
-    boxes.push_back(whole_box(glm::dvec3(0), glm::dvec3(1e39, 0, 0), glm::dvec3(0, 1e39, 0), glm::dvec3(0, 0, 1e39)));
+    boxes.push_back(oriented_box(glm::dvec3(0), glm::dvec3(1e39, 0, 0), glm::dvec3(0, 1e39, 0), glm::dvec3(0, 0, 1e39)));
     boxes.push_back(projector_box(glm::dvec3(0, 0, 1e39), {0, 0, -1e40}, {1e40, 0, 0}, {0, 1e40, 0}));
     const Sphere none = {0, 0, -5, light_range(0, 1)};
     for (const glm::vec3& centre : {glm::vec3(0, 0, -5), glm::vec3(1e-45f, 0, -3e38f)})

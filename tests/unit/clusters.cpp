@@ -224,6 +224,6 @@ TEST_CASE("more pairs of a light and a slice than 32 bits number are refused") {
     Binner<Options{.slicing = Slicing::clusters}> binner;
     const auto grid = binner.bin(test::view({64, 64}, 64), lights, {.slices = *Slices::linear(100000, 0, 200)});
     REQUIRE_FALSE(grid);
-    CHECK(grid.error().code == ErrorCode::too_many_list_places);
+    CHECK(grid.error().code == ErrorCode::too_many_pairs);
     CHECK(std::string(grid.error().message()).find("fewer slices") != std::string::npos);
 }

@@ -254,7 +254,7 @@ TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of
                 CHECK(light.nearest >= nearest - wider);
                 CHECK(light.farthest <= farthest + wider);
 
-                const Sphere least = least_sphere(spot);
+                const Sphere least = bounding_sphere(spot);
                 const glm::dvec4 sphere(least.x, least.y, least.z, least.radius);
                 if (!std::isfinite(light.pixels) ||
                     forward * sphere.z - sphere.w < 0.01 * sphere.w + 2 * double{view.near_depth()})

@@ -169,11 +169,11 @@ TEST_CASE("doubles out of the floats' range light everything; those that are bad
 // That these spheres hold the shapes, and are the least that do, is proven in tests/oracle/least_spheres.cpp.
 TEST_CASE("spheres around lights of other shapes, whole, endless or bad") {
     for (const float cosine : {0.0f, -0.0f, -0.3f, -1.0f})
-        CHECK(least_sphere({1, 2, 3, 8, 0, 1e-45f, 0, cosine}).radius == 8);
+        CHECK(bounding_sphere({1, 2, 3, 8, 0, 1e-45f, 0, cosine}).radius == 8);
     for (const float axis : {0.0f, HUGE_VALF, std::nanf("")})
-        CHECK(least_sphere({1, 2, 3, 8, axis, axis, 0, -1}).radius == 8);
-    CHECK(least_sphere({1, 2, 3, HUGE_VALF, 0, 1, 0, 0.9f}).radius == HUGE_VALF);
-    CHECK(least_sphere({1, 2, 3, 0, 0, 1, 0, 0.9f}).radius == 0);
+        CHECK(bounding_sphere({1, 2, 3, 8, axis, axis, 0, -1}).radius == 8);
+    CHECK(bounding_sphere({1, 2, 3, HUGE_VALF, 0, 1, 0, 0.9f}).radius == HUGE_VALF);
+    CHECK(bounding_sphere({1, 2, 3, 0, 0, 1, 0, 0.9f}).radius == 0);
 
     const glm::vec3 a(1, 2, 3), b(7, 2, 11);
     CHECK(tube_sphere(ViewPoint{1, 2, 3}, ViewPoint{7, 2, 11}, 2).radius == tube_sphere(a, b, 2).radius);

@@ -158,8 +158,8 @@ TEST_CASE("masks have the lights of the lists where there are many columns or ro
     const auto spheres = test::random_lights(70, 5);
     const test::Kinds kinds = test::random_kinds(20, 20, 20, 6);
     const Slices slices = *Slices::linear(20, 0, 80);
-    for (const Extent size :
-         {Extent{255, 254}, {256, 255}, {257, 300}, {1000, 40}, {40, 1000}, {32768, 3}, {3, 32768}}) {
+    for (const ImageSize size :
+         {ImageSize{255, 254}, {256, 255}, {257, 300}, {1000, 40}, {40, 1000}, {32768, 3}, {3, 32768}}) {
         check(test::view(size, 1), std::vector<Sphere>{{0, 0, -5, HUGE_VALF}}, slices);
         check(test::view(size, 1), spheres, slices);
         check(test::view(size, 1), lights(kinds.spheres, kinds.spots, kinds.boxes), slices);
@@ -185,7 +185,7 @@ TEST_CASE("a MaskBinner that was moved from is as new, and what it had goes on e
 
 TEST_CASE("masks of an empty viewport are empty") {
     MaskBinner binner;
-    for (const Extent size : {Extent{0, 0}, {0, 40}, {40, 0}}) {
+    for (const ImageSize size : {ImageSize{0, 0}, {0, 40}, {40, 0}}) {
         const auto masks = binner.bin(test::view(size, 16), test::random_lights(50, 3), *Slices::linear(4, 0, 9));
         REQUIRE(masks);
         check_words(*masks);

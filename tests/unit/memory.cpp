@@ -56,7 +56,7 @@ TEST_CASE("a buffer refuses what no machine holds, and is as any other after it"
 
 TEST_CASE("more entries than 32-bit offsets reach, and more lights in supertiles than kernels count to") {
     for (const auto& [side, count, code] : {std::tuple(4096, 256u, ErrorCode::too_many_entries),  // of 2^24 tiles
-                                            {16384, 1024u, ErrorCode::too_many_list_places}}) {  // of 2^22 supertiles
+                                            {16384, 1024u, ErrorCode::too_many_pairs}}) {  // of 2^22 supertiles
         const std::vector<glm::vec4> lights(count, glm::vec4(0, 0, 0, HUGE_VALF));
         Binner<> binner;
         const auto grid = binner.bin(test::view({side, side}, 1), lights);

@@ -47,7 +47,7 @@ template <class Visit> void on_machine_tiers(Visit visit) {
 }
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
-inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
+inline lightbin::View view(lightbin::ImageSize viewport, int tile_size) {
     const float aspect =
         viewport.height > 0 ? static_cast<float>(viewport.width) / static_cast<float>(viewport.height) : 1.0f;
     const glm::mat4 projection = glm::perspectiveRH_NO(1.0471976f, aspect > 0 ? aspect : 1.0f, 0.1f, 1000.0f);

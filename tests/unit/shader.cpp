@@ -35,13 +35,13 @@ void only_in(const std::string& with, const std::string& without, std::initializ
     }
 }
 
-std::string text_of(const ShaderOptions& options) {
+std::string text_of(const SnippetOptions& options) {
     const Result<ShaderText> shader = shader_snippet(options);
     REQUIRE(shader);
     return shader->text;
 }
 
-std::string refusal(const ShaderOptions& options) {
+std::string refusal(const SnippetOptions& options) {
     const Result<ShaderText> shader = shader_snippet(options);
     REQUIRE(!shader);
     return shader.error().message();
@@ -117,21 +117,21 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.prefix = std::string(1001, 'a')}), "1000"));
 }
 
-TEST_CASE("several views: the constants of each are a ShaderView, and how many there may be is told") {
+TEST_CASE("several views: the constants of each are a ViewConstants, and how many there may be is told") {
     const auto of_views = [](std::uint32_t views) {
-        return ShaderOptions{.language = ShaderLanguage::glsl_vulkan, .views = views, .view_check = true};
+        return SnippetOptions{.language = ShaderLanguage::glsl_vulkan, .views = views, .view_check = true};
     };
     const auto bound = shader_snippet(of_views(3))->bindings;
     const auto image = std::find_if(bound.begin(), bound.end(), [](const ShaderBinding& binding) {
         return binding.name == "lightbin_image_block";
     });
     REQUIRE(image != bound.end());
-    CHECK(image->bytes == 3 * sizeof(ShaderView));
+    CHECK(image->bytes == 3 * sizeof(ViewConstants));
     CHECK(has(text_of(of_views(512)), "view < 512u"));
     CHECK(has(refusal(of_views(513)), "1 to 512, and is 513"));
     CHECK(has(refusal(of_views(0)), "is 0"));
     // A block of bins has those of each view.
-    const ShaderOptions block = {.storage = ListStorage::uniform_block,
+    const SnippetOptions block = {.storage = ListStorage::uniform_block,
                                  .slicing = Slicing::z_bins,
                                  .views = 2,
                                  .max_tiles = 2,
@@ -219,7 +219,7 @@ TEST_CASE("reduction and cull shaders need no more than every device has") {
     CHECK(sizes == texts);
 }
 
-TEST_CASE("shader_view: where a View has a point, and how near it may be") {
+TEST_CASE("view_constants: where a View has a point, and how near it may be") {
     glm::mat4 off_centre = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
     off_centre[2][0] = 0.3f;
     off_centre[2][1] = -0.2f;
@@ -228,7 +228,7 @@ TEST_CASE("shader_view: where a View has a point, and how near it may be") {
         for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
             const auto view =
                 View::from_projection(projection, {1919, 1079}, {.tile_size = 7, .origin = origin});
-            const ShaderView shader = shader_view(*view, 3);
+            const ViewConstants shader = view_constants(*view, 3);
             const ImagePoint there = view->image_point({0.4, -0.3, -2});
             const float depth = shader.forward * -2, by = shader.perspective > 0 ? depth : 1;
             CHECK(static_cast<double>(depth) == there.depth);

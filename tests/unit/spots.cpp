@@ -61,7 +61,7 @@ TEST_CASE("a matrix that bends cones makes spheres of spots") {
     const std::vector<Spot> spots = random_spots(300, 7);
     std::vector<Sphere> least;
     for (const Spot& spot : spots)
-        least.push_back(least_sphere(spot));
+        least.push_back(bounding_sphere(spot));
     const glm::mat4 stretched = glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 2));
     const auto as_spheres = test::id_lists<Options{}>(view, world_space(least, stretched)),
                as_spots = test::id_lists<Options{}>(view, world_space(spots, stretched));

@@ -16,7 +16,7 @@ namespace {
 
 using namespace lightbin;
 
-View view_of(Extent viewport) {
+View view_of(ImageSize viewport) {
     const double projection[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2, 0}};
     return *View::from_projection(projection, viewport, {.tile_size = 1});
 }

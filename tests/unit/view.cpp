@@ -25,10 +25,10 @@ using lightbin::WindowOrigin;
 
 namespace {
 
-constexpr lightbin::Extent full_hd = {1920, 1080};
+constexpr lightbin::ImageSize full_hd = {1920, 1080};
 
 template <class Matrix>
-ErrorCode refusal(const Matrix& matrix, lightbin::Extent viewport = full_hd, ViewOptions options = {}) {
+ErrorCode refusal(const Matrix& matrix, lightbin::ImageSize viewport = full_hd, ViewOptions options = {}) {
     const auto view = View::from_projection(matrix, viewport, options);
     REQUIRE(!view);
     CHECK(std::string(view.error().message()).size() > 20);
@@ -69,7 +69,7 @@ TEST_CASE("sizes out of range are refused, and the text names them") {
     CHECK(refusal(matrix, {1920, 40000}) == ErrorCode::viewport_out_of_range);
     CHECK(refusal(matrix, full_hd, {.tile_size = 0}) == ErrorCode::tile_size_out_of_range);
     CHECK(refusal(matrix, full_hd, {.tile_size = -8}) == ErrorCode::tile_size_out_of_range);
-    const auto message = [&](lightbin::Extent viewport, ViewOptions options) -> std::string {
+    const auto message = [&](lightbin::ImageSize viewport, ViewOptions options) -> std::string {
         return View::from_projection(matrix, viewport, options).error().message();
     };
     CHECK(message({1920, 40000}, {}).find("40000") != std::string::npos);
@@ -157,7 +157,7 @@ TEST_CASE("a projection of other axes is refused by a text that says so, and acc
 }
 
 TEST_CASE("a view says what it read, and what is seldom meant") {
-    const auto summary = [](const glm::mat4& matrix, lightbin::Extent viewport = full_hd, ViewOptions options = {}) {
+    const auto summary = [](const glm::mat4& matrix, lightbin::ImageSize viewport = full_hd, ViewOptions options = {}) {
         const auto view = View::from_projection(matrix, viewport, options);
         REQUIRE(view);
         return view->summary();
@@ -222,7 +222,7 @@ struct Made {
     int flip_x, flip_y;
 };
 
-void check_summary(const Made& made, lightbin::Extent viewport) {
+void check_summary(const Made& made, lightbin::ImageSize viewport) {
     const auto [flat, clip, reversed, forward, far, flip_x, flip_y] = made;
     const double left = -0.3, right = 0.5, low = -0.2,
                  high = 0.7;  // where depth is 1; orthographic: anywhere
@@ -278,7 +278,7 @@ TEST_CASE("a summary has the numbers that the matrix was made of") {
                 for (const double forward : {-1.0, 1.0})
                     for (const double far : {3.0, 100.0, 1e5, flat ? 7.0 : inf})
                         for (const auto& [flip_x, flip_y] : {std::pair(1, 1), {-1, 1}, {1, -1}})
-                            for (const lightbin::Extent viewport : {full_hd, {0, 0}, {640, 0}, {0, 480}}) {
+                            for (const lightbin::ImageSize viewport : {full_hd, {0, 0}, {640, 0}, {0, 480}}) {
                                 CAPTURE(flat);
                                 CAPTURE(to_string(clip));
                                 CAPTURE(reversed);
@@ -372,8 +372,8 @@ TEST_CASE("a point of view space lies where the matrix puts it, and back") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> side(-1.2, 1.2), depth(-5, 60);
     for (const Projected& made : all_kinds())
-        for (const lightbin::Extent viewport :
-             {full_hd, lightbin::Extent{1919, 1079}, lightbin::Extent{3, 500}})
+        for (const lightbin::ImageSize viewport :
+             {full_hd, lightbin::ImageSize{1919, 1079}, lightbin::ImageSize{3, 500}})
             for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
                 const auto view = View::from_projection(
                     made.matrix, viewport,

@@ -100,7 +100,7 @@ template <class Result> ErrorCode code_of(const Result& result) {
 
 TEST_CASE("views in one pair of buffers have the lists that each has alone") {
     const Slices slices = *Slices::exponential(7, 2, 90);
-    for (const Extent size : {Extent{320, 200}, Extent{1, 1}, Extent{0, 40}}) {
+    for (const ImageSize size : {ImageSize{320, 200}, ImageSize{1, 1}, ImageSize{0, 40}}) {
         const View view = test::view(size, 16);
         check_shared<Options{}>(view, slices);
         check_shared<Options{.ids = IdWidth::u16}>(view, slices);
@@ -170,7 +170,7 @@ TEST_CASE("views that do not fit into buffers, or not together, are an error and
 TEST_CASE("a union of two grids lists what either lists, once and in order") {
     const Slices slices = *Slices::exponential(5, 2, 60);
     GridUnion<std::uint16_t> of_tiles, of_clusters;
-    for (const Extent size : {Extent{500, 300}, Extent{64, 64}, Extent{1, 1}, Extent{0, 9}})
+    for (const ImageSize size : {ImageSize{500, 300}, ImageSize{64, 64}, ImageSize{1, 1}, ImageSize{0, 9}})
         for (const float aside : {0.0f, 0.064f, 5.0f, 1000.0f}) {
             const View view = test::view(size, 16);
             const auto lights = test::random_lights(900, 3);

@@ -11,7 +11,7 @@ namespace c {
 
 /// Reads the pass and the options that the caller's struct describes, or returns why they are refused.
 inline lightbin_result read_cull_options(const lightbin_cull_options* options, CullPass& pass,
-                                         CullShaderOptions& known) {
+                                         CullOptions& known) {
     lightbin_cull_options given;
     lightbin_result result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
@@ -41,7 +41,7 @@ lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
                                      lightbin_shader** shader) {
     using namespace lightbin::c;
     lightbin::CullPass pass = {};
-    lightbin::CullShaderOptions known;
+    lightbin::CullOptions known;
     return make_shader(shader, read_cull_options(options, pass, known),
                        [&] { return lightbin::cull_shader(pass, known); });
 }
@@ -51,7 +51,7 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
                                    const lightbin_matrix* to_view, lightbin_cull_plan* plan) {
     using namespace lightbin::c;
     lightbin::CullPass pass = {};
-    lightbin::CullShaderOptions known;
+    lightbin::CullOptions known;
     lightbin::Matrix matrix;
     lightbin_result result = first_error(check_pointers({{view, "view"}}), read_cull_options(options, pass, known),
                                          check_size(plan, "plan"));

@@ -12,7 +12,7 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
                                        lightbin_shader** shader) {
     using namespace lightbin::c;
     lightbin_reduce_options given;
-    lightbin::ReduceShaderOptions known;
+    lightbin::ReduceOptions known;
     lightbin_result result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
         result = first_error(LIGHTBIN_MEMBER(language), LIGHTBIN_MEMBER(prefix), LIGHTBIN_MEMBER(samples),
@@ -25,9 +25,9 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
     return make_shader(shader, result, [&] { return lightbin::reduce_shader(known); });
 }
 
-lightbin_result lightbin_shader_reduce(const lightbin_view* view, std::int32_t corner_x,
+lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, std::int32_t corner_x,
                                        std::int32_t corner_y, lightbin_reduce_constants* constants) {
-    return lightbin::c::write_constants<lightbin::shader_reduce>(view, constants, corner_x, corner_y);
+    return lightbin::c::write_constants<lightbin::reduce_constants>(view, constants, corner_x, corner_y);
 }
 
 }  // extern "C"

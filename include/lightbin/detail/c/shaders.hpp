@@ -49,7 +49,7 @@ lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
                                         lightbin_shader** shader) {
     using namespace lightbin::c;
     lightbin_snippet_options given;
-    lightbin::ShaderOptions known;
+    lightbin::SnippetOptions known;
     lightbin_result result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
         result = first_error(
@@ -94,14 +94,14 @@ lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size
     });
 }
 
-lightbin_result lightbin_shader_grid(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
+lightbin_result lightbin_get_grid_constants(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
                                      lightbin_grid_constants* constants) {
-    return lightbin::c::write_constants<lightbin::shader_grid>(view, constants, corner_x, corner_y);
+    return lightbin::c::write_constants<lightbin::grid_constants>(view, constants, corner_x, corner_y);
 }
 
-lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
+lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tolerance,
                                      lightbin_view_constants* constants) {
-    return lightbin::c::write_constants<lightbin::shader_view>(view, constants, tolerance);
+    return lightbin::c::write_constants<lightbin::view_constants>(view, constants, tolerance);
 }
 
 lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint32_t* words,

@@ -43,7 +43,7 @@ extern "C" {
 lightbin_result lightbin_spot_sphere(const lightbin_spot* spot, lightbin_sphere* sphere) {
     using namespace lightbin;
     return c::make_light({{spot, "spot"}, {sphere, "sphere"}}, sphere,
-                         [&] { return least_sphere(c::same_numbers<Spot>(*spot)); });
+                         [&] { return bounding_sphere(c::same_numbers<Spot>(*spot)); });
 }
 
 lightbin_result lightbin_tube_sphere(const float* a, const float* b, float radius, lightbin_sphere* sphere) {
@@ -68,10 +68,10 @@ lightbin_result lightbin_box_sphere(const lightbin_box* box, lightbin_sphere* sp
                          [&] { return bounding_sphere(c::same_numbers<Box>(*box)); });
 }
 
-lightbin_result lightbin_whole_box(const float* centre, const float* half_axes, lightbin_box* box) {
+lightbin_result lightbin_oriented_box(const float* centre, const float* half_axes, lightbin_box* box) {
     using namespace lightbin;
     return c::make_light({{centre, "centre"}, {half_axes, "half_axes"}, {box, "box"}}, box, [&] {
-        return whole_box(c::triple_at(centre), c::triple_at(half_axes), c::triple_at(half_axes + 3),
+        return oriented_box(c::triple_at(centre), c::triple_at(half_axes), c::triple_at(half_axes + 3),
                          c::triple_at(half_axes + 6));
     });
 }
@@ -82,7 +82,7 @@ lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_
     lightbin_result result = c::check_pointers({{transform, "transform"}});
     if (result.error == LIGHTBIN_OK) result = c::read_member(*transform, matrix, "transform");
     if (result.error != LIGHTBIN_OK) return result;
-    return c::make_light({{box, "box"}}, box, [&] { return whole_box(matrix, half_side); });
+    return c::make_light({{box, "box"}}, box, [&] { return oriented_box(matrix, half_side); });
 }
 
 lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float* direction,

@@ -18,7 +18,7 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
     return abs(v[0]) + abs(v[1]) + abs(v[2]);
 }
 
-/// In each lane whose bit in `which` is set, stores as spots.apex and spots.radius the spot's least_sphere() in view
+/// In each lane whose bit in `which` is set, stores as spots.apex and spots.radius the spot's bounding_sphere() in view
 /// space, in place of the sphere that the cone cuts.
 ///
 /// given  the spots as they were given
@@ -28,7 +28,7 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
     store_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
-        const Sphere least = least_sphere(given[lane]);
+        const Sphere least = bounding_sphere(given[lane]);
         moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);

@@ -15,7 +15,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
 /// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more,
 /// an infinite radius and a light switched off give the spot's own sphere; a bad spot gives a bad Sphere.
-inline Sphere least_sphere(const Spot& spot) {
+inline Sphere bounding_sphere(const Spot& spot) {
     const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
                                  static_cast<double>(spot.axis_z)};
     const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),

@@ -11,7 +11,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& options) {
+inline Result<ShaderText> cull_shader(CullPass pass, const CullOptions& options) {
     using namespace detail;
     if (const auto error = refuse_cull(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);

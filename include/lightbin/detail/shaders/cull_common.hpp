@@ -13,7 +13,7 @@ inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< mask blocks: bits
 inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a light's first and last slice, 16 bits each
 
 /// Returns the first error among the options, or nothing.
-inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
+inline std::optional<Error> refuse_cull(const CullOptions& options) {
     return refuse_common(
         options,
         {options.lights, options.z_bounds, options.scratch, options.slices, options.tiles, options.light_count,
@@ -29,20 +29,20 @@ constexpr unsigned cull_threads(CullPass pass) {
 }
 
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
-inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
+inline std::uint32_t cull_record_words(const CullOptions& options) {
     const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
     if (!options.depth_test) return words;
     return words + (options.kind == CullKind::spot ? 20u : 4u);
 }
 
 /// Returns the shader's expression for where the record of a light begins in `scratch`, from that for its id.
-inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
+inline std::string cull_record_of(const CullOptions& options, const std::string& id) {
     return std::to_string(sizeof(CullTotals) / 4) + "u + " + id + " * " + std::to_string(cull_record_words(options)) +
            "u";
 }
 
-/// Declares the members of ShaderCull, without those that lights in view space don't need.
-inline void declare_cull_constants(ShaderWriter& writer, const CullShaderOptions& options) {
+/// Declares the members of CullConstants, without those that lights in view space don't need.
+inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& options) {
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
                                              {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
                                              {"vec4", "signs"},   {"vec4", "planes"}};
@@ -52,7 +52,7 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullShaderOptions
     writer.declare_constants(constants, options.grid, false, 1, true);
 }
 
-inline void declare_scratch(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void declare_scratch(ShaderWriter& writer, const CullOptions& options) {
     writer.declare_storage("scratch", "uint", "", options.scratch, 4);
 }
 
@@ -63,14 +63,14 @@ inline void add_saturated_sum(ShaderWriter& writer) {
 
 /// Returns the shader's expression for the number of layers of mask blocks: with clusters one for each 2^$blocks.w
 /// slices, else one.
-inline const char* cull_layers(const CullShaderOptions& options) {
+inline const char* cull_layers(const CullOptions& options) {
     return options.slicing == Slicing::clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u";
 }
 
 /// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks` before,
 /// `mark` for each light in view, and `write_masks` after. A mask block is a block of tiles, see plan_blocks(), that
 /// has a bitmask of the lights in it, 32 to a word.
-inline void add_masks_of_group(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_masks_of_group(ShaderWriter& writer, const CullOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     writer.declare_shared("block_bits", 2 * cull_max_blocks, true);
     writer.add(std::string("\nuint $block_count() {\n    return $blocks.x * $blocks.y * ") + cull_layers(options) +

@@ -18,7 +18,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// with: a tile's Z bounds, or a slice's depths. A Z bound that is NaN excludes nothing; it is recognised by its
 /// bits, as compilers may assume that no float is NaN, and infinity is made a finite depth beyond all lights that
 /// are tested.
-inline void add_cell_depths(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_cell_depths(ShaderWriter& writer, const CullOptions& options) {
     const bool max_only = options.max_only && options.slicing != Slicing::clusters;
     writer.add(std::string(R"(
 float $finite(float depth, float other) {
@@ -64,7 +64,7 @@ bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
 /// of side and depth, and one that a GPU computes within 2u, so 2^-20 = 16u outward is more than enough. The
 /// distances, each a difference, have a relative error of 2u, the sum of their squares of 10u, the Binner's of 5u;
 /// 2^-18 of the squared radius = 64u is more. 2^-80 is for squares that are flushed to zero.
-inline void add_cell_box(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_cell_box(ShaderWriter& writer, const CullOptions& options) {
     if (options.orthographic) {
         writer.add("\nvec2 $across(vec2 sides, vec2 z) {\n    return sides;\n}\n");
     } else {
@@ -96,7 +96,7 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
 
 /// Adds `tiles_met`, which returns what the rectangle of the light whose record begins at `at` covers of the 8x8 tiles
 /// from `corner` on: a bit for each column and, from bit 8 on, for each row; 0 if the light does not meet the slice.
-inline void add_tiles_met(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_tiles_met(ShaderWriter& writer, const CullOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     writer.add(std::string(R"(
 // The bits from the tile `first` to the tile `last`, of 8 tiles from `begin` on.
@@ -129,7 +129,7 @@ inline void declare_stage(ShaderWriter& writer) {
 /// Adds `stage`, with which a group stages the lights of 32 words of a mask block, from word `first` on, and finds
 /// those in each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill;
 /// bits beyond the last light are 0.
-inline void add_stage(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_stage(ShaderWriter& writer, const CullOptions& options) {
     writer.add(R"(
 uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
     if (thread < 8u) {
@@ -194,7 +194,7 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
 
 /// Returns the shader's lines that find the cell's depths and box. `drawn` is false if the cell is outside of the grid
 /// or its Z bounds are empty.
-inline std::string cull_cell(const CullShaderOptions& options) {
+inline std::string cull_cell(const CullOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     if (!options.depth_test) return "    bool drawn = inside;\n";
     return std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
@@ -215,7 +215,7 @@ inline std::string cull_cell(const CullShaderOptions& options) {
 /// Adds `store_id`, which writes an id to the lists. Ids of 16 bits share words, also with the lists before and
 /// after: `half` changes its own half of a word and no other, so it makes no difference which half is written
 /// first.
-inline void add_store_id(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_store_id(ShaderWriter& writer, const CullOptions& options) {
     writer.add(options.ids == IdWidth::u32
                    ? "\nvoid $store_id(uint at, uint id) {\n    if (at < $grid.w) { $lists[at] = id; }\n}\n"
                    : R"(
@@ -231,7 +231,7 @@ void $store_id(uint at, uint id) {
 }
 
 /// Adds the pass count or fill.
-inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bool fill) {
+inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fill) {
     const bool clusters = options.slicing == Slicing::clusters, depths = options.depth_test,
                narrow = options.ids == IdWidth::u16;
     if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
@@ -326,7 +326,7 @@ void $scan(uint thread, uint own) {
 }
 
 /// Adds the pass sums: an invocation adds up the counts of a cell's segments, and a group those of 128 cells.
-inline void add_sums(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_sums(ShaderWriter& writer, const CullOptions& options) {
     declare_scratch(writer, options);
     add_scan(writer);
     writer.add(std::string(R"(
@@ -375,7 +375,7 @@ void $total_lights(uint thread) {
 
 /// Writes the text of the pass `offsets`, in which a single work group adds up the sums that the work groups of the
 /// pass `sums` left in `scratch`, and stores CullTotals.
-inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_offsets(ShaderWriter& writer, const CullOptions& options) {
     declare_scratch(writer, options);
     add_total_lights(writer);
     writer.add(std::string(R"(

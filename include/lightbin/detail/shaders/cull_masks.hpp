@@ -10,7 +10,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Writes the text of the pass `masks`. Each invocation writes one word: that of 32 lights in the mask of a column, in
 /// the empty mask or in the mask of a row, or the id of a light. The invocations of the same 32 lights are side by
 /// side, in groups of 128, so that they read the same 32 records.
-inline void add_masks(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_masks(ShaderWriter& writer, const CullOptions& options) {
     declare_scratch(writer, options);
     writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
     add_total_lights(writer);

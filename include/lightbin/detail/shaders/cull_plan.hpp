@@ -30,7 +30,7 @@ inline CullGroups cull_groups(std::uint64_t count) {
 }
 
 /// Sets the columns and rows of mask blocks: 8x8 tiles each, or more where that would make too many.
-inline void plan_blocks(ShaderCull& to) {
+inline void plan_blocks(CullConstants& to) {
     for (to.block_shift = 3, to.slice_shift = 0;;) {
         to.blocks_x = max_of(divided_up(to.tiles_x, 1u << to.block_shift), 1u);
         to.blocks_y = max_of(divided_up(to.tiles_y, 1u << to.block_shift), 1u);
@@ -51,7 +51,7 @@ inline void plan_axis(const ImageAxis& axis, float& scale, float& offset, float&
     limit = axis.limit;
 }
 
-inline void plan_camera(const Camera& camera, ShaderCull& to) {
+inline void plan_camera(const Camera& camera, CullConstants& to) {
     plan_axis(camera.x, to.scale_x, to.offset_x, to.margin_x, to.limit_x);
     plan_axis(camera.y, to.scale_y, to.offset_y, to.margin_y, to.limit_y);
     to.sign_x = camera.x.sign;
@@ -70,7 +70,7 @@ inline void plan_camera(const Camera& camera, ShaderCull& to) {
 /// Sets the transform from world space. The GPU's sums may be off by twice what correctly rounded ones are, and its
 /// sphere must hold the Binner's, whose radius is enlarged by its own bound: together four times the Binner's
 /// bound.
-inline void plan_transform(const FloatTransform& from, ShaderCull& to) {
+inline void plan_transform(const FloatTransform& from, CullConstants& to) {
     const auto copy = [](const float (&numbers)[3], float (&into)[3]) { copy_items(numbers, 3, into); };
     copy(from.origin, to.origin);
     copy(from.columns[0], to.column_x);
@@ -85,7 +85,7 @@ inline void plan_transform(const FloatTransform& from, ShaderCull& to) {
 }
 
 /// Sets where in the buffer `scratch` each of its arrays begins, and returns how many words they take in all.
-inline std::uint64_t plan_scratch(const CullShaderOptions& options, std::uint64_t cells, ShaderCull& to) {
+inline std::uint64_t plan_scratch(const CullOptions& options, std::uint64_t cells, CullConstants& to) {
     const std::uint64_t groups = max_of(divided_up(to.lights, 64), 1u),
                         record_words = cull_record_words(options) * 64 * groups,
                         layers = divided_up(to.slices, 1u << to.slice_shift);
@@ -105,7 +105,7 @@ inline std::uint64_t plan_scratch(const CullShaderOptions& options, std::uint64_
 
 }  // namespace detail
 
-inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
+inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, const CullCapacity& room,
                                   const Slices* slices, const Matrix* to_view) {
     using namespace detail;
     const DefaultFloatEnvironment environment;
@@ -117,7 +117,7 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     if (options.ids == IdWidth::u16 && room.lights > 0x10000)
         return Error{ErrorCode::too_many_lights, room.lights, 0x10000};
     CullPlan plan;
-    ShaderCull& to = plan.constants;
+    CullConstants& to = plan.constants;
     to.tiles_x = static_cast<std::uint32_t>(view.tiles_x());
     to.tiles_y = static_cast<std::uint32_t>(view.tiles_y());
     to.slices = slice_count;

@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
 /// one of its numbers exceeds 2^40, 3 for one that is switched off, else 2. The bits of floats without a sign ascend
 /// with the floats: those of 2^40 are 0x53800000, of infinity 0x7f800000. Those of -1 are 0xbf800000.
-inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_state(ShaderWriter& writer, const CullOptions& options) {
     const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
     const CullLayout& at = options.lights_at;
     writer.add("\nuint $state_of(uint at) {\n    uint x = " + word(at.centre) + " & 0x7fffffffu;\n    uint y = " +
@@ -34,7 +34,7 @@ inline void add_state(ShaderWriter& writer, const CullShaderOptions& options) {
 /// Adds the function `sphere_at`, which returns a light's sphere in view space, signed so that tile indices grow with x
 /// and y, and z is the view depth. It contains the Binner's sphere. The radius is made at least 2^-40, so that squares
 /// don't underflow.
-inline void add_sphere(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_sphere(ShaderWriter& writer, const CullOptions& options) {
     const auto number = [&](std::uint32_t offset) {
         return "uintBitsToFloat($lights[at + " + std::to_string(offset) + "u])";
     };
@@ -144,7 +144,7 @@ vec2 $clipped(float c, float z, float r, float n) {
 /// by 10u, scale and product by u each, together 12u F; its offset by u |offset|, its two sums by u tiles each. So
 /// beyond the Binner's own margin, by which it moves its edges outward, the GPU's must be 43u F + 2u |offset| + 6u
 /// tiles. It is 46u F + 8u (|offset| + tiles), see plan_axis(); the rest is for products of errors.
-inline void add_span(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_span(ShaderWriter& writer, const CullOptions& options) {
     if (options.orthographic) {
         writer.add("\nvec2 $bounds_of(float c, float z, float r) {\n    return vec2(c - r, c + r);\n}\n");
     } else {
@@ -205,7 +205,7 @@ uvec2 $slices_of(vec2 z) {
 /// Returns the shader's lines that store what the depth test reads, from word `word` of the record on: the light's
 /// sphere, behind which `project` stores a spot's half spaces. A radius of -1 stands for a light that boxes don't
 /// exclude: one that counts as everywhere, or a spot that is not sound.
-inline std::string cull_depth_record(const CullShaderOptions& options, const std::string& word) {
+inline std::string cull_depth_record(const CullOptions& options, const std::string& word) {
     const auto put = [&](const char* index, const char* value) {
         return "    $scratch[record + " + word + " + " + index + "u] = floatBitsToUint(" + value + ");\n";
     };
@@ -214,7 +214,7 @@ inline std::string cull_depth_record(const CullShaderOptions& options, const std
 }
 
 /// Adds the pass project.
-inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     const bool sliced = options.slicing != Slicing::none, box = options.depth_test,
                spots = options.kind == CullKind::spot;
     const std::string depths = sliced ? "3u" : "2u";  // where in a record what the depth test reads begins

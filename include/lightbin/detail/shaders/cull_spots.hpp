@@ -24,7 +24,7 @@ inline void add_spot_state(ShaderWriter& writer, const CullLayout& layout) {
 /// its ball has the axis 0, the cosine 0, the sine 1 and the tolerance 0. `least` is the least sphere around the
 /// spot, or its ball where that is hardly larger; `depths` are the spot's view depths. Where `sound` is false, the
 /// Binner may have the least sphere in place of the spot.
-inline void add_spot_at(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_spot_at(ShaderWriter& writer, const CullOptions& options) {
     const auto number = [&](std::uint32_t offset) {
         return "uintBitsToFloat($lights[at + " + std::to_string(offset) + "u])";
     };
@@ -173,7 +173,7 @@ vec2 $narrowed($spot s, vec2 bounds, float c, float axis, float other) {
 /// times its least depth, half of what the Binner allows. Where the ball certainly meets the near plane they are the
 /// intersection of the ball's bounds and the least sphere's, as the Binner's are. In between it is not known which of
 /// these the Binner has, and they are the ball's.
-inline void add_spots(ShaderWriter& writer, const CullShaderOptions& options) {
+inline void add_spots(ShaderWriter& writer, const CullOptions& options) {
     add_spot_at(writer, options);
     if (options.depth_test) add_half_spaces(writer);
     if (options.orthographic) {

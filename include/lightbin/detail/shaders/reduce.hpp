@@ -7,7 +7,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options) {
+inline Result<ShaderText> reduce_shader(const ReduceOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
     const Dialect& dialect = writer.dialect;

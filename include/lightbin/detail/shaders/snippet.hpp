@@ -54,7 +54,7 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
     return words;
 }
 
-inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
+inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
     const Dialect& dialect = writer.dialect;
@@ -62,7 +62,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const bool textures = options.storage == ListStorage::texture_2d;
     const bool masks = options.masks;
     // Every device allows a uniform block of 16384 bytes. It holds the constants of `check_view` for so many views.
-    const std::uint32_t max_views = masks ? 1 : 16384 / sizeof(ShaderView);
+    const std::uint32_t max_views = masks ? 1 : 16384 / sizeof(ViewConstants);
     if (const auto error = refuse_common(
             options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
             {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,

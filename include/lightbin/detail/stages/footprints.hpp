@@ -49,7 +49,7 @@ public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
     /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
     /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere
-    /// and of its least_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
+    /// and of its bounding_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
                                detail::Kept kept = detail::Kept::nothing) {

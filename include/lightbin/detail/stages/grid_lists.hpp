@@ -166,7 +166,7 @@ private:
     static std::optional<Error> check_list_size(const View& view, const FootprintSlice& slice) {
         if (slice.area > surely_listed_area)
             if (const std::uint64_t size = list_size_bound(camera_of(view), slice); size > max_entries)
-                return Error{ErrorCode::too_many_list_places, size, max_entries};
+                return Error{ErrorCode::too_many_pairs, size, max_entries};
         return {};
     }
 

@@ -23,7 +23,7 @@ public:
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
         const std::uint64_t size = find_slices(kernel, view, footprints);
-        if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
+        if (size > max_count) return Error{ErrorCode::too_many_pairs, size, max_count};
         arrays_ = buffers_.reserve(size);
         arrays_.view_lights = lights.view_lights;
         const SliceRange* met = met_.data();

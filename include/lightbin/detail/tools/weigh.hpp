@@ -14,7 +14,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-inline std::string to_string(const Verdict& verdict) {
+inline std::string to_string(const AdviceVerdict& verdict) {
     const bool weighed = !verdict.instead.empty(), gains = verdict.saved_ns >= 0;
     const char* said = verdict.keep ? "keep: no other was weighed" : "leave out: was not weighed";
     if (weighed && verdict.keep) said = gains ? "keep: saves" : "keep: costs only";
@@ -32,7 +32,7 @@ inline std::string to_string(const Verdict& verdict) {
 LIGHTBIN_SMALL inline std::string Advice::text() const {
     std::string lines = "   cost  tile  by     depth test  slicing      entries   build us  "
                         "M evaluations   total us\n";
-    for (const Plan& plan : plans()) {
+    for (const AdvicePlan& plan : plans()) {
         char tile[16] = "-", line[160];
         if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
         std::snprintf(line, sizeof line, "%7.2f  %4s  %-5s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
@@ -47,18 +47,18 @@ LIGHTBIN_SMALL inline std::string Advice::text() const {
     return lines;
 }
 
-LIGHTBIN_SMALL inline std::vector<Verdict> Advice::verdicts(const Plan& plan) const {
-    constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
-        {"tiles", [](const Plan& p) { return p.tiled; }},
-        {"masks", [](const Plan& p) { return p.tiled && p.masks; }},
-        {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
-        {"depth test", [](const Plan& p) { return p.tiled && p.depth_test; }},
-        {"clusters", [](const Plan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
-        {"z-bins", [](const Plan& p) { return p.tiled && p.slicing == Slicing::z_bins; }}};
-    std::vector<Verdict> all;
+LIGHTBIN_SMALL inline std::vector<AdviceVerdict> Advice::verdicts(const AdvicePlan& plan) const {
+    constexpr std::pair<const char*, bool (*)(const AdvicePlan&)> parts[] = {
+        {"tiles", [](const AdvicePlan& p) { return p.tiled; }},
+        {"masks", [](const AdvicePlan& p) { return p.tiled && p.masks; }},
+        {"pre-pass", [](const AdvicePlan& p) { return p.has_z_bounds(); }},
+        {"depth test", [](const AdvicePlan& p) { return p.tiled && p.depth_test; }},
+        {"clusters", [](const AdvicePlan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
+        {"z-bins", [](const AdvicePlan& p) { return p.tiled && p.slicing == Slicing::z_bins; }}};
+    std::vector<AdviceVerdict> all;
     for (const auto& [part, has] : parts) {
-        Verdict verdict = {.part = part, .keep = has(plan), .instead = {}};
-        for (const Plan& other : plans()) {
+        AdviceVerdict verdict = {.part = part, .keep = has(plan), .instead = {}};
+        for (const AdvicePlan& other : plans()) {
             if (has(other) == verdict.keep) continue;
             verdict.other = other;
             verdict.instead = to_string(other);
@@ -75,7 +75,7 @@ inline std::string to_string(const Advice& advice) {
     std::snprintf(line, sizeof line, "%.3f ms a frame: %s; the cheapest of %zu plans\n",
                   advice.best().total_ns * 1e-6, to_string(advice.best()).c_str(), advice.plans().size());
     std::string lines = line;
-    for (const Verdict& verdict : advice.verdicts(advice.best()))
+    for (const AdviceVerdict& verdict : advice.verdicts(advice.best()))
         lines += to_string(verdict);
     return lines;
 }
@@ -101,7 +101,7 @@ constexpr Options weighed_options(Options base, const Options& row) {
 /// Searches `table`, an array of Options, from row i on for a plan's depth test and slicing. Calls
 /// visit.operator()<options>() with `base` and these two, and returns its result.
 template <const auto& table, Options base, std::size_t i, class Visit>
-decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
+decltype(auto) with_options_from(const AdvicePlan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
     const bool found = plan.depth_test == options.depth_test && plan.slicing == options.slicing;
     if constexpr (i + 1 < std::size(table))
@@ -173,7 +173,7 @@ auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orth
 ///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
 LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
-                     const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
+                     const LightRange& lights, const AdviceCosts& costs, ForEachVisible for_each_visible) {
     // The grids: tiles of the view's tile size, of 2, 4 and 8 times that size while that is smaller than the screen,
     // and one tile as large as the screen.
     std::vector<WeighedGrid> grids;
@@ -188,7 +188,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     MaskBinner mask_binner(base.isa);
     // Builds a plan's masks and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
     // first call also counts the words that pixels look at, and how often pixels evaluate a light.
-    const auto build_masks = [&](Plan& plan, const View& grid, const auto& moved, bool first) -> std::optional<Error> {
+    const auto build_masks = [&](AdvicePlan& plan, const View& grid, const auto& moved, bool first) -> std::optional<Error> {
         const bool binned = plan.slicing == Slicing::z_bins;
         const auto start = Clock::now();
         const auto built = binned ? mask_binner.bin(grid, moved, slices.z_bins) : mask_binner.bin(grid, moved);
@@ -216,7 +216,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         return std::nullopt;
     };
     // Does the same with the lists of a plan, of which it counts the entries.
-    const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
+    const auto build = [&](AdvicePlan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)
             ++grid;
@@ -252,7 +252,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     };
 
     const auto& source = as_lights(lights);
-    std::vector<Plan> plans = {{.tiled = false}};
+    std::vector<AdvicePlan> plans = {{.tiled = false}};
     for_each_visible([&](int, int, float, double pixels) {
         plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(light_count(source));
     });
@@ -260,7 +260,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         for (const Options& options : table) {
             const bool lacks_bounds = grid.bounds.min.empty() && grid.bounds.max.empty();
             if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) continue;
-            Plan plan = {.depth_test = options.depth_test,
+            AdvicePlan plan = {.depth_test = options.depth_test,
                          .slicing = options.slicing,
                          .tile_size = grid.view.tile_size(),
                          .build_ns = HUGE_VAL};
@@ -280,7 +280,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     constexpr int turns = 8;
     for (int turn = 0;; ++turn) {
         double least = HUGE_VAL;
-        for (Plan& plan : plans) {
+        for (AdvicePlan& plan : plans) {
             plan.total_ns = plan.build_ns + plan.upload_ns +
                             (plan.evaluations + plan.words * costs.word_evaluations) * costs.evaluation_ns;
             least = (std::min)(least, plan.total_ns);
@@ -289,7 +289,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
                                                camera_of(view).x.scale);
         const auto moved = moved_aside(source, aside, view.orthographic());
-        for (Plan& plan : plans)
+        for (AdvicePlan& plan : plans)
             if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
                 static_cast<void>(build(plan, moved, false));
     }
@@ -297,21 +297,21 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
 
 }  // namespace detail
 
-template <Options base, class Visit> decltype(auto) with_options(const Plan& plan, Visit&& visit) {
+template <Options base, class Visit> decltype(auto) with_options(const AdvicePlan& plan, Visit&& visit) {
     return detail::with_options_from<detail::weighed, base, 0>(plan, visit);
 }
 
-template <Options base, class Visit> decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit) {
+template <Options base, class Visit> decltype(auto) with_sliced_options(const AdvicePlan& plan, Visit&& visit) {
     return detail::with_options_from<detail::weighed_sliced, base, 0>(plan, visit);
 }
 
 template <Options base, class Clock, class LightRange>
-Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs, const ZBounds& bounds) {
+Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCosts& costs, const ZBounds& bounds) {
     for (const std::span<const float> side : {bounds.min, bounds.max})
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
-    const Extent window = view.viewport();
+    const ImageSize window = view.viewport();
     const int size = view.tile_size();
     const Slices one = *Slices::from_boundaries({});  // read by no plan
     return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
@@ -323,8 +323,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 
 template <Options base, class Clock, class LightRange>
 Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
-                             const DepthSamples& samples, const Costs& costs) {
-    const Extent window = view.viewport(), grid = samples.size;
+                             const DepthSamples& samples, const AdviceCosts& costs) {
+    const ImageSize window = view.viewport(), grid = samples.size;
     const auto side = [](int n) { return static_cast<std::uint64_t>((std::max)(n, 0)); };
     const std::uint64_t count = side(grid.width) * side(grid.height);
     if (samples.depths.size() < count)
