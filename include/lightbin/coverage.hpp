@@ -53,18 +53,17 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
         return {{light.x, light.y, light.z, lights.spheres[id].radius}, light.nearest, light.farthest};
     } else {
         const auto& light = lights.template shape<kind>(id);
-        Sphere sphere = light.ball;
+        Sphere sphere = {light.x, light.y, light.z, light.radius};
         if constexpr (kind == LightKind::box) {
-            Box whole = {0, 0, 0, infinity, light.centre[0], light.centre[1], light.centre[2], {}, light.taper};
-            copy_items(&light.half_axes[0][0], 9, &whole.half_axes[0][0]);
+            Box whole = light;
+            whole.radius = infinity;
             Sphere corners = bounding_sphere(whole);
             if (!(corners.radius > 0))  // in float, all half axes are 0
-                corners = {light.centre[0], light.centre[1], light.centre[2], 0};
+                corners = {light.box_x, light.box_y, light.box_z, 0};
             corners.radius = enlarged(corners.radius, light.tolerance);
             if (corners.radius < sphere.radius) sphere = corners;
         } else if (light.tolerance > 0) {
-            sphere = bounding_sphere(Spot{sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y,
-                                          light.axis_z, light.cosine});
+            sphere = bounding_sphere(light);
             sphere.radius = enlarged(sphere.radius, light.tolerance);
         }
         return {sphere, light.nearest, light.farthest};
@@ -92,8 +91,8 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
 
 }  // namespace detail
 
-/// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
-/// are projected for it, as Binner::bin() projects them for the lists.
+/// Returns what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The
+/// lights are projected for it, as Binner::bin() projects them for the lists.
 ///
 /// lights, threads  as for Binner::bin()
 /// isa              use no wider instructions than these. The result does not depend on it.

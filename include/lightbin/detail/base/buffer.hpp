@@ -12,6 +12,10 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// The widest vector of all instruction sets has this many bytes, and this many floats. Kernels load and store whole
+/// vectors, so memory that they work on has `widest_vector` elements more than are used: no vector has more elements.
+inline constexpr std::size_t widest_vector = 64, widest_lanes = 16;
+
 /// An array whose elements are not initialised, unlike those of std::vector, as they are about to be overwritten.
 template <class T> class Buffer {
 public:

@@ -11,7 +11,7 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
 /// Returns in which buckets, a lookup table's depth intervals, a vector of depths lies, before truncation to integers.
-/// The arithmetic is that of DepthBuckets::index_of().
+/// It computes what DepthBuckets::index_of() does, in the same operations.
 inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     depth = depth + broadcast(0.0f);  // makes -0 to 0
     const Floats coordinate = buckets.by_bits ? ascending_bits(depth) : depth;

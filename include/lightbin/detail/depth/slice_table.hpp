@@ -71,7 +71,8 @@ public:
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
     /// conservative  the slices may be one more at either end, where that is faster to find
-    /// lights, runs  FootprintArrays and ranges of indices in them; overwrites 16 elements of lights.ids after each
+    /// lights, runs  FootprintArrays and ranges of indices in them; overwrites `widest_lanes` elements of lights.ids
+    ///               after each
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
         // The conservative way to find slices compares no depth with slice boundaries. It takes all slices that meet
@@ -80,7 +81,7 @@ public:
         // be: there may then be few buckets per boundary, and many lights would get a slice too many.
         conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
         for (const auto& run : runs) {
-            fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // kernels read whole vectors of ids
+            fill_items(lights.ids + run.end, widest_lanes, lights.ids[run.begin]);  // kernels read whole vectors
             for (std::uint32_t i = run.begin; i < run.end; i += LightDepths::size) {
                 const std::uint32_t count = min_of(run.end - i, LightDepths::size);
                 LightDepths depths;

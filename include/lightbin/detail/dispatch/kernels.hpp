@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Which kernel runs: the choice of a tier by the instruction set, and of a binning method by the number of tiles.
+// Which kernel runs: the choice of a tier by the instruction set.
 #pragma once
 
 #include <lightbin/detail/dispatch/tiers.hpp>
-#include <lightbin/detail/engine/costs.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -44,37 +43,6 @@ inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.depth_kernel(); });
     return depth_kernel(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
-}
-
-/// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all. Kernels without a depth test
-/// read footprints only, so all kinds of lights share those of spheres.
-///
-/// by_slab  whether lights are tested against the boxes around a depth slice's cells, see SlabCells
-template <bool depth_test, class Id, bool by_slab, LightKind kind>
-BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
-    if constexpr (!depth_test)
-        if (scatter_is_faster(isa, view.tile_count(), area)) return scatter_lights<Id>;
-    return with_tier(isa, [](auto tier) {
-        return tier.template bin_kernel<depth_test, Id, by_slab, kind>();
-    });
-}
-
-/// The binning kernels for a set of options and a kind of lights.
-template <class Id> struct ListKernels {
-    /// Returns the kernel for one slice: the fastest for lights whose rectangles have `area` tiles in all.
-    BinKernel<Id> (*choose)(Isa isa, const View& view, std::uint64_t area);
-    /// Returns how many entries the lists of one slice have. Null without a depth test.
-    std::uint64_t (*count)(const BinJob& slice, Scratch& scratch);
-};
-
-/// Returns the kernels for lights of the kind `kind`. With clusters and a depth test, spheres and spots are tested
-/// against boxes of equal depths, see SlabCells: a build takes 1.2 to 2 times as long with boxes that differ in depth.
-template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr ListKernels<Id> list_kernels() {
-    constexpr bool by_slab = clusters && depth_test && kind != LightKind::box;
-    if constexpr (depth_test)
-        return {bin_kernel<true, Id, by_slab, kind>, least::count_entries<by_slab, kind>};
-    else
-        return {bin_kernel<false, Id, false, LightKind::sphere>, nullptr};
 }
 
 }}}  // namespace lightbin::detail

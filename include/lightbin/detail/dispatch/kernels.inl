@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The kernels of one tier (instruction set). The source of a kernel is an .inl file of templates over the tier's vector
-// class. This file includes all of them but those of spots and boxes, which shape_kernels.inl includes, and each after
+// class. This file includes all kernels but those of spots and boxes, which shape_kernels.inl includes, and each after
 // the files whose functions it calls. A tier is a header that defines the names below and includes this file, so each
 // kernel is compiled once per tier, in the tier's namespace. A kernel also has a member in Tier, at the end of this
 // file, and a function in kernels.hpp that returns it.
@@ -32,23 +32,19 @@
 //   compress_store(mask, from, to) stores the chosen bytes, or 32-bit ids, side by side, then meaningless elements
 // A tier overloads the functions of common.inl for which it has a faster way.
 
+// clang-format off: in this order
 #include <lightbin/detail/vectors/common.inl>
-
 #include <lightbin/detail/depth/depth_columns.inl>
-
 #include <lightbin/detail/depth/slice_indices.inl>
-
 #include <lightbin/detail/project/world_to_view.inl>
-
 #include <lightbin/detail/project/spheres.inl>
-
 #include <lightbin/detail/engine/lists.inl>
-
 #include <lightbin/detail/engine/cells.inl>
-
+#include <lightbin/detail/engine/cell_tests.inl>
+#include <lightbin/detail/engine/slab_tests.inl>
 #include <lightbin/detail/engine/depth_tests.inl>
-
 #include <lightbin/detail/engine/emit.inl>
+// clang-format on
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
@@ -60,11 +56,11 @@ struct Tier {
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     static DepthKernel depth_kernel() { return column_extremes; }
 
-    template <bool depth_test, class Id, bool by_slab, LightKind kind> static BinKernel<Id> bin_kernel() {
-        if constexpr (!depth_test && lanes <= (widest_that_scatters == Isa::scalar ? 1 : 4))
+    template <class Id, Tested tested, LightKind kind> static BinKernel<Id> bin_kernel() {
+        if constexpr (tested == Tested::nothing && lanes <= (widest_that_scatters == Isa::scalar ? 1 : 4))
             return scatter_lights<Id>;
         else
-            return bin_blocks<depth_test, Id, by_slab, kind>;
+            return bin_blocks<Id, tested, kind>;
     }
 };
 

@@ -8,6 +8,14 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// What the lights of a tile's rectangle are tested against before the tile lists them: nothing; the tile's cell; with
+/// clusters, the boxes around the cells of a depth slice (a slab), which all lie between the same two depths.
+enum class Tested : std::uint8_t { nothing, cells, slab };
+
+/// Whether there are spheres alone, which are tested against the boxes in a slab. Other kinds are tested against cells.
+template <Tested tested, LightKind kind>
+inline constexpr bool slab_alone = tested == Tested::slab && kind == LightKind::sphere;
+
 /// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_*.
 struct BlockList {
     std::uint32_t begin, count;
@@ -49,6 +57,14 @@ struct Scratch {
     std::uint8_t* row_columns_of(const BlockList& list) const {
         return row_columns.data() + std::size_t{8} * list.begin;
     }
+    /// Returns row_columns_of(list) for a list behind all others, with memory for its table.
+    std::uint8_t* reserve_row_columns(const BlockList& list) {
+        row_columns.reserve(std::uint64_t{8} * (list.begin + list.padded_count()) + widest_vector,
+                            std::size_t{8} * list.begin);
+        return row_columns_of(list);
+    }
+    /// The bytes that store_met_boxes() keeps in tile_masks.
+    std::uint8_t* met_boxes() const { return reinterpret_cast<std::uint8_t*>(tile_masks.data()); }
 };
 
 /// Returns an upper bound on the number of elements, which kernels count in 32 bits, of the lists of all blocks (8x8

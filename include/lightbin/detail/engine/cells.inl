@@ -58,10 +58,34 @@ inline void fill_8_floats(float* to, float value) {
         store_floats(to + i, broadcast(value));
 }
 
-/// Stores what the depth test compares lights with, for the block that begins at tile column 8 * x and tile row `top`:
-/// in `boxes`, six arrays of one float for each of its 64 tiles, the boxes around the tiles' cells, as store_boxes()
-/// lays them out, and in `edges` the edges of the tiles. Returns a bit for each tile whose Z bounds are not empty.
-inline std::uint64_t arrange_cells(const BinJob& job, unsigned x, unsigned top, float* boxes, TileEdges& edges) {
+/// The cells of a block's tiles, with which the depth test compares the block's lights.
+struct BlockCells {
+    float boxes[6 * 64];   ///< the boxes around the cells, as store_boxes() lays them out
+    TileEdges edges;       ///< the edges of the cells' tiles
+    std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
+    DepthInterval depths;  ///< an interval that holds the view depths of the cells of all tiles in `drawn`
+};
+
+/// Returns the interval of the view depths of all cells that share a vector with a tile whose bit in `drawn` is set.
+inline DepthInterval depth_range(const float* boxes, std::uint64_t drawn) {
+    float min[lanes], max[lanes];
+    Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
+    for (unsigned tile = 0; tile < 64; tile += lanes)
+        if ((drawn >> tile & every_lane) != 0) {
+            nearest = minimum(load_floats(boxes + tile), nearest);
+            farthest = maximum(load_floats(boxes + 64 + tile), farthest);
+        }
+    store_floats(min, nearest);
+    store_floats(max, farthest);
+    DepthInterval range = {min[0], max[0]};
+    for (std::uint32_t lane = 1; lane < lanes; ++lane)
+        range = {min_of(range.min, min[lane]), max_of(range.max, max[lane])};
+    return range;
+}
+
+/// Fills `cells` for the block that begins at tile column 8 * x and tile row `top`.
+inline void arrange_cells(const BinJob& job, unsigned x, unsigned top, BlockCells& cells) {
+    TileEdges& edges = cells.edges;
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const unsigned rows = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
@@ -86,10 +110,11 @@ inline std::uint64_t arrange_cells(const BinJob& job, unsigned x, unsigned top, 
         const Floats min = load_floats(bounds[0] + tile), max = load_floats(bounds[1] + tile);
         drawn |= (~std::uint64_t{movemask(less(max, min))} & every_lane) << tile;
         const float *const of_x = edges.x + tile % 8, *const of_y = edges.y + tile;
-        store_boxes(*job.camera, boxes + tile, load_floats(of_x), load_floats(of_x + edges.high_x), load_floats(of_y),
-                    load_floats(of_y + edges.high_y), min, max);
+        store_boxes(*job.camera, cells.boxes + tile, load_floats(of_x), load_floats(of_x + edges.high_x),
+                    load_floats(of_y), load_floats(of_y + edges.high_y), min, max);
     }
-    return drawn & ~std::uint64_t{0} >> 8 * (8 - rows);
+    cells.drawn = drawn & ~std::uint64_t{0} >> 8 * (8 - rows);
+    cells.depths = depth_range(cells.boxes, cells.drawn);
 }
 
 /// Returns the boxes of a slice's cells. They are the boxes that store_boxes() would store for these cells.
@@ -101,7 +126,7 @@ inline SlabBoxes arrange_slab(const BinJob& job, Scratch& scratch) {
     const Floats front = broadcast(camera.orthographic ? 1.0f : slab.z0),
                  back = broadcast(camera.orthographic ? 1.0f : slab.z1);
     const std::size_t tiles[] = {static_cast<std::size_t>(camera.x.tiles), static_cast<std::size_t>(camera.y.tiles)};
-    float* ends = scratch.slab_ends.reserve(2 * (tiles[0] + std::uint64_t{tiles[1]} + 2 * SlabBoxes::padding));
+    float* ends = scratch.slab_ends.reserve(2 * (tiles[0] + std::uint64_t{tiles[1]} + 2 * widest_lanes));
     for (unsigned side = 0; side < 4; ++side) {
         const std::size_t count = tiles[side / 2];
         for (std::size_t i = 0; i < count; i += lanes) {
@@ -109,7 +134,7 @@ inline SlabBoxes arrange_slab(const BinJob& job, Scratch& scratch) {
             store_floats(ends + i, side % 2 == 0 ? low_ends(edges, front, back) : high_ends(edges, front, back));
         }
         slab.ends[side] = ends;
-        ends += count + SlabBoxes::padding;
+        ends += count + widest_lanes;
     }
     return slab;
 }

@@ -15,9 +15,9 @@ struct RowLights {
     std::uint32_t count;
 };
 
-/// Returns the lights from which a row is emitted: none if the row has none, else those of the whole block. In a block
-/// of more than 64 lights, it is a copy of those in the row: builds of 10,000 lights take 1.1 to 1.25 times as long
-/// without it.
+/// Returns the lights from which a row of a block's tiles is emitted: no lights if none is in the row, else all lights
+/// of the block. In a block of more than 64 lights, it is a copy of the lights in the row: builds of 10,000 lights take
+/// 1.1 to 1.25 times as long without it.
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
@@ -26,7 +26,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
         return any != 0 ? all : RowLights{};
     }
     if (all.count <= 64) return all;
-    const std::uint64_t capacity = all.count + std::uint64_t{128};
+    const std::uint64_t capacity = all.count + std::uint64_t{2 * widest_vector};
     std::uint32_t* const ids = scratch.row_ids.reserve(capacity);
     std::uint8_t* const columns = scratch.picked_columns.reserve(capacity);
     std::uint32_t picked = 0;
@@ -37,7 +37,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
         compress_store(chosen, all.ids + i, ids + picked);
         picked += static_cast<std::uint32_t>(std::popcount(chosen));
     }
-    std::memset(columns + picked, 0, 16);
+    std::memset(columns + picked, 0, widest_lanes);
     return {ids, columns, picked};
 }
 
@@ -117,7 +117,7 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
             end = emit_short(out, tiles + x, columns, offset, lights.ids, lights.columns);
         } else {
             std::uint64_t few[8], *words = few;
-            if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
+            if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{8});
             for (std::uint32_t i = 0; i < lights.count; i += 64)
                 split_bits(lights.columns + i, words + i / 8);
             end = emit_tiles(out, tiles + x, columns, offset, lights, words);
@@ -129,7 +129,7 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
 }
 
 /// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
-/// writes the tiles' lists. Returns the number of list entries. May write up to BinShare::slack elements past them.
+/// writes the tiles' lists. Returns the number of list entries. May write up to `widest_vector` elements past them.
 ///
 /// slab       the boxes around a depth slice's cells, if list_band reads them
 /// list_band  list_lights() for the options
@@ -163,26 +163,24 @@ LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob& job, Scratch& scr
 }
 
 /// bin_blocks_by() with the list_lights() of the given options.
-template <bool depth_test, class Id, bool by_slab, LightKind kind>
+template <class Id, Tested tested, LightKind kind>
 std::uint64_t bin_blocks(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     SlabBoxes slab;
-    if constexpr (by_slab)
+    if constexpr (tested == Tested::slab)
         if (job.visible != 0) slab = arrange_slab(job, scratch);
-    return bin_blocks_by(job, scratch, share, slab, list_lights<depth_test, by_slab, kind>);
+    return bin_blocks_by(job, scratch, share, slab, list_lights<tested, kind>);
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-///
-/// by_slab  as for bin_kernel()
-template <bool by_slab, LightKind kind>
+template <Tested tested, LightKind kind>
 std::uint64_t count_entries(const BinJob& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
     SlabBoxes slab;
-    if constexpr (by_slab) slab = arrange_slab(job, scratch);
+    if constexpr (tested == Tested::slab) slab = arrange_slab(job, scratch);
     BandLists bands;
     std::uint64_t entries = 0;
     for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<true, by_slab, kind>(job, scratch, slab, bands, top, end);
+        const BlockList* list = list_lights<tested, kind>(job, scratch, slab, bands, top, end);
         for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
             for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
                 entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));

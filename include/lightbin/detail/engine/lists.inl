@@ -77,8 +77,8 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
 
 /// Lists the lights of as many bands of 8 tile rows, from row `begin` on, as max_band_entries allows in one pass.
 ///
-/// tested  whether to list indices in the footprint arrays, for depth tests, rather than lights' ids
-template <bool tested>
+/// by_index  whether to list indices in the footprint arrays, for depth tests, rather than lights' ids
+template <bool by_index>
 void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;
     to.panels = (width + panel_blocks - 1) / panel_blocks;
@@ -87,7 +87,7 @@ void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned en
     to.begin = begin;
     to.end = min_of(begin + 8 * static_cast<unsigned>(together), end);
     to.count = (to.end - to.begin + 7) / 8 * to.panels;
-    to.capacity = job.visible + std::size_t{64};  // whole vectors are stored
+    to.capacity = job.visible + widest_vector;
     const std::uint64_t entries = std::uint64_t{to.capacity} * to.count;
     to.x0 = scratch.band_x0.reserve(entries);
     to.x1 = scratch.band_x1.reserve(entries);
@@ -96,9 +96,9 @@ void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned en
     to.sizes = scratch.band_sizes.reserve(to.count);
     fill_items(to.sizes, to.count, 0);
     const std::uint32_t* ids = job.lights.ids;
-    if constexpr (tested) {
+    if constexpr (by_index) {
         const std::uint32_t last = job.runs.empty() ? 0 : job.runs.back().end;
-        std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{64});
+        std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{widest_vector});
         for (const FootprintRun& run : job.runs)
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 indices[i] = i;
@@ -123,7 +123,7 @@ inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::s
                                 std::uint32_t begin) {
     const std::size_t list = band * bands.panels + x / panel_blocks, size = bands.sizes[list];
     if (size == 0) return 0;
-    const std::uint64_t capacity = begin + std::uint64_t{size} + 128;
+    const std::uint64_t capacity = begin + std::uint64_t{size} + 2 * widest_vector;
     std::uint8_t* const columns = scratch.list_columns.reserve(capacity, begin) + begin;
     std::uint8_t* const rows = scratch.list_rows.reserve(capacity, begin) + begin;
     std::uint32_t* const ids = scratch.list_ids.reserve(capacity, begin) + begin;
@@ -141,6 +141,60 @@ inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::s
         count += static_cast<std::uint32_t>(std::popcount(chosen));
     }
     return count;
+}
+
+/// Fills the table of Scratch::row_columns_of(), which has for each row of tiles a byte for each light, with a bit for
+/// each tile that it is listed in. These are the tiles of its rectangle that `narrow` leaves.
+///
+/// narrow  a callable: narrow(columns, at) returns `columns`, the bytes of a vector of lights, without the tiles in
+///         which these are not listed. With a row's number and a light's index, `at` is row * list.padded_count() +
+///         index
+template <class Narrow> void store_rectangles(Scratch& scratch, const BlockList& list, const Narrow& narrow) {
+    const std::uint32_t padded = list.padded_count();
+    std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
+    const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
+    std::uint8_t* to = scratch.reserve_row_columns(list);
+    std::memset(columns + list.count, 0, widest_lanes);
+    for (unsigned row = 0; row < 8; ++row, to += padded)
+        for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
+            const Bytes in_row = load_bytes(rows + i) & broadcast_byte(1u << row);
+            store_bytes(to + i, keep_where(narrow(load_bytes(columns + i), row * padded + i), in_row));
+        }
+}
+
+/// Finds the tiles in which the lights of a list are listed if there is a depth test, for the block that begins at tile
+/// column 8 x and tile row `top`: removes from the list the lights that meet no cell, and fills the table of
+/// Scratch::row_columns_of() with the tiles of the others.
+template <Tested tested, LightKind kind>
+void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
+                       BlockList& list);
+
+/// Lists the lights of the blocks of 8x8 tiles in the 8 rows from `top` on, and fills the table of
+/// Scratch::row_columns_of() with a bit for each tile that a light is in. Returns the lists, or null if all are empty.
+///
+/// slab   with Tested::slab, the boxes around the depth slice's cells, which lights are tested against
+/// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
+/// end    the end of the tile rows that the caller will ask for
+template <Tested tested, LightKind kind>
+const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
+                             unsigned top, unsigned end) {
+    const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
+    if (top >= bands.end)
+        list_bands<tested != Tested::nothing && !slab_alone<tested, kind>>(job, scratch, top, end, bands);
+    BlockList* const lists = scratch.lists.reserve(width);
+    std::uint32_t used = 0;
+    if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
+    for (unsigned x = 0; x < width; ++x) {
+        BlockList& list = lists[x];
+        list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
+        if (list.count == 0) continue;
+        if constexpr (tested == Tested::nothing)
+            store_rectangles(scratch, list, [](Bytes columns, std::size_t) { return columns; });
+        else
+            find_tested_tiles<tested, kind>(job, scratch, slab, x, top, list);
+        if (list.count > 0) used += list.padded_count();
+    }
+    return used == 0 ? nullptr : lists;
 }
 
 }}}}  // namespace lightbin::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of boxes in view space, and what projection and depth tests have in common: the normals of a box's faces, and
-// how far a box reaches in a direction. Included once per tier (instruction set).
+// Vectors of boxes in view space: their sizes, the normals of their faces, and how far they reach in a direction.
+// Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -18,36 +18,11 @@ template <class Reals> struct BoxLanes {
     Reals error;
 };
 
-/// Loads the ViewBoxes box_of(lane): the boxes, whose BoxLanes::error is the ViewBox's tolerance, the centres and radii
-/// of their balls, and their least view depths.
-template <class BoxOf>
-LIGHTBIN_INLINE void load_boxes(const BoxOf& box_of, BoxLanes<Floats>& box, Floats (&ball)[4], Floats& nearest) {
-    Sphere vec4s[5][lanes];  // a ViewBox up to its half axes
-    static_assert(offsetof(ViewBox, around) == 5 * sizeof(Sphere));
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-        const ViewBox& one = box_of(lane);
-        for (std::size_t part = 0; part < 5; ++part)
-            std::memcpy(vec4s[part] + lane, reinterpret_cast<const char*>(&one) + part * sizeof(Sphere),
-                        sizeof(Sphere));
-    }
-    Floats farthest, (&h)[3][3] = box.half_axes;
-    load_spheres(vec4s[0], ball[0], ball[1], ball[2], ball[3]);
-    load_spheres(vec4s[1], nearest, farthest, box.taper, box.error);
-    load_spheres(vec4s[2], box.centre[0], box.centre[1], box.centre[2], h[0][0]);
-    load_spheres(vec4s[3], h[0][1], h[0][2], h[1][0], h[1][1]);
-    load_spheres(vec4s[4], h[1][2], h[2][0], h[2][1], h[2][2]);
-}
-
 /// Returns the greatest n.p of all points p of boxes, relative to the boxes' centres.
 inline Floats reach_from_centre(const BoxLanes<Floats>& box, const Floats (&n)[3]) {
     const Floats along = dot(n, box.half_axes[2]),
                  across = abs(dot(n, box.half_axes[0])) + abs(dot(n, box.half_axes[1]));
     return maximum(across + along, mul(across, box.taper) - along);
-}
-
-/// Returns the greatest n.p of all points p of boxes.
-inline Floats reach_of(const BoxLanes<Floats>& box, const Floats (&n)[3]) {
-    return dot(n, box.centre) + reach_from_centre(box, n);
 }
 
 /// Returns the sum of the absolute values of the half axes' coordinates.
@@ -67,16 +42,19 @@ template <class Reals> Reals size_of(const BoxLanes<Reals>& box) {
 /// Finds normals of the six faces of boxes, which point outward and have any length: faces 2 i and 2 i + 1 are those
 /// that half axis i points to and away from. The normals of faces without an area are 0.
 ///
-/// axes  the half axes, all three multiplied by a factor so that products of six of their coordinates neither
-///       overflow nor underflow
-///
-/// Let h_0, h_1 and h_2 be the half axes, t the taper, and g_i = h_j x h_k for (i, j, k) = (0, 1, 2) and its cyclic
-/// permutations. A side of half axis i = 0 or 1 contains the other of these two half axes and the directions h_2 +-
-/// (1 - t) / 2 h_i, to which +-g_i - (1 - t) / 2 g_2 is perpendicular. The product h_i.g_i, which is the same for all
-/// i, is negative where the half axes are left-handed, and the normals are then negated. A half axis of zero is
-/// replaced by g_i, so that the sides of a flat box have normals in its plane.
-inline void find_normals(const Floats (&axes)[3][3], Floats taper, Floats (&normals)[6][3]) {
-    Floats h[3][3], g[3][3];
+/// The half axes are first divided by axes_size(), so that products of six of their coordinates neither overflow nor
+/// underflow; where that size is too small to divide by, they count as 0. Let h_0, h_1 and h_2 be the half axes, t the
+/// taper, and g_i = h_j x h_k for (i, j, k) = (0, 1, 2) and its cyclic permutations. A side of half axis i = 0 or 1
+/// contains the other of these two half axes and the directions h_2 +- (1 - t) / 2 h_i, to which +-g_i - (1 - t) / 2
+/// g_2 is perpendicular. The product h_i.g_i, which is the same for all i, is negative where the half axes are
+/// left-handed, and the normals are then negated. A half axis of zero is replaced by g_i, so that the sides of a flat
+/// box have normals in its plane.
+inline void find_normals(const BoxLanes<Floats>& box, Floats (&normals)[6][3]) {
+    Floats axes[3][3], h[3][3], g[3][3];
+    const Floats size = axes_size(box), per_size = select(less(broadcast(0x1p-120f), size), 1.0f / size, Floats{});
+    for (unsigned axis = 0; axis < 3; ++axis)
+        for (unsigned i = 0; i < 3; ++i)
+            axes[axis][i] = mul(box.half_axes[axis][i], per_size);
     for (unsigned i = 0; i < 3; ++i) {
         const auto flat = less_equal(manhattan_length(axes[i]), Floats{});
         for (unsigned k = 0; k < 3; ++k)
@@ -89,7 +67,7 @@ inline void find_normals(const Floats (&axes)[3][3], Floats taper, Floats (&norm
     for (unsigned i = 0; i < 3; ++i)
         cross(h[(i + 1) % 3], h[(i + 2) % 3], g[i]);
     const auto left_handed = less(dot(h[2], g[2]), Floats{});
-    const Floats narrowing = mul(1.0f - taper, broadcast(0.5f));
+    const Floats narrowing = mul(1.0f - box.taper, broadcast(0.5f));
     for (unsigned i = 0; i < 3; ++i) {
         const Floats tilt = select(left_handed, -mul(narrowing, g[2][i]), mul(narrowing, g[2][i]));
         for (unsigned axis = 0; axis < 3; ++axis) {
@@ -98,15 +76,6 @@ inline void find_normals(const Floats (&axes)[3][3], Floats taper, Floats (&norm
             normals[2 * axis + 1][i] = axis == 2 ? -out : -out - tilt;
         }
     }
-}
-
-/// Finds half axes divided by axes_size(), as find_normals() takes them. Where that size is too small to divide by,
-/// they are 0.
-inline void find_unit_axes(const BoxLanes<Floats>& box, Floats (&axes)[3][3]) {
-    const Floats size = axes_size(box), per_size = select(less(broadcast(0x1p-120f), size), 1.0f / size, Floats{});
-    for (unsigned axis = 0; axis < 3; ++axis)
-        for (unsigned i = 0; i < 3; ++i)
-            axes[axis][i] = mul(box.half_axes[axis][i], per_size);
 }
 
 }}}}  // namespace lightbin::detail

@@ -2,10 +2,10 @@
 // The projection of boxes, and of the parts of spheres in boxes, to tile rectangles, a vector of lights at a time.
 // Included once per tier.
 //
-// A rectangle is where those of the box and of the sphere, here called its ball, intersect. With a perspective
-// projection, the box's is that of the corners beyond the near plane and of the points where edges cross it. Each
-// corner is a sum of coordinates of the centre and the half axes, whose absolute values add up to S for all three
-// coordinates together.
+// A light's rectangle is the intersection of two rectangles: around its box, and around the sphere that cuts the box,
+// here called its ball. With a perspective projection, the rectangle around the box is the one around its corners
+// beyond the near plane and the points where its edges cross that plane. Each corner is a sum of coordinates of the
+// centre and the half axes, whose absolute values add up to S for all three coordinates together.
 //
 // Rounding in float, with the unit roundoff u = 2^-24: such sums have errors of at most 5u S, together for the three
 // coordinates of a corner. BoxLanes::error is 16u S, and the error of the transform from world space is added. By
@@ -134,7 +134,7 @@ template <class Reals> struct BoxBounds {
 /// Rounding is monotone, and the depths of the near and far plane are floats, so comparing rounded sums with these is
 /// exact.
 template <class Reals>
-LIGHTBIN_INLINE decltype(less(Reals{}, Reals{})) find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
+LIGHTBIN_INLINE auto find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
                                      BoxBounds<Reals>& bounds) {
     // The corners of the two faces along half axis 2 lie at  way +- k h_0 +- k h_1  from the ball's centre, where `way`
     // leads to the face's middle and k is 1 or the taper. Such a squared distance is at most the sum of the squared
@@ -175,8 +175,9 @@ LIGHTBIN_INLINE decltype(less(Reals{}, Reals{})) find_box_depths(const Camera& c
     return both(inside, less_equal(bounds.nearest, bounds.farthest));
 }
 
-/// Narrows the image bounds of boxes to those of their balls, where these cut the boxes. Returns `visible` without
-/// the lights of which both do not intersect in the numbers that tile_span() takes tiles from.
+/// Narrows the image bounds of boxes to the bounds `balls` of their balls (the spheres that cut them), where a ball
+/// cuts its box. Returns `visible` without the lights whose two bounds do not intersect, in the numbers from which
+/// tile_span() finds tiles.
 template <class Real, class Reals, class Mask>
 LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Reals>& balls, Reals radius,
                                      ImageBounds<Reals>& bounds, Mask visible) {
@@ -200,9 +201,8 @@ LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Rea
 /// an error of at most 8u L S, which the tolerance covers, see ViewBox. For the 4u L S that cell_planes.hpp asks for,
 /// 8u L S = 2^-21 L S is added, and its 2^-100 for underflow. Faces with L up to 2^-50 are left out.
 inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
-    Floats axes[3][3], normals[6][3];
-    find_unit_axes(box, axes);
-    find_normals(axes, box.taper, normals);
+    Floats normals[6][3];
+    find_normals(box, normals);
     const Floats slack = box.error + mul(size_of(box), broadcast(0x1p-21f));
     // Without tapers, opposite faces have opposite normals, for which the numbers below are the same but for signs.
     const bool tapered = movemask(less(box.taper, broadcast(1.0f))) != 0;
@@ -217,22 +217,136 @@ inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
     }
 }
 
-/// Returns which boxes of a vector are good input, see Box. `given` has the numbers of each in their order in memory.
-LIGHTBIN_INLINE unsigned good_boxes(const Floats (&given)[17]) {
-    const Floats largest = broadcast(FLT_MAX);
-    auto good = both(less_equal(Floats{}, given[3]),
-                     both(less_equal(Floats{}, given[16]), less_equal(given[16], broadcast(1.0f))));
+/// Loads the numbers of a vector of Boxes, in the order in which a Box has them in memory.
+LIGHTBIN_INLINE void load_boxes(const Box* from, Floats (&given)[17]) {
+    // Sixteen boxes of 68 bytes lie in 17 cache lines, more than the processor prefetches by itself. Later ones may lie
+    // beyond the array's end, where a pointer must not be formed, but an address may be.
+    if constexpr (lanes == 16)
+        for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
+            LIGHTBIN_PREFETCH(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(from) +
+                                                            2 * lanes * sizeof *from + k));
+    static_assert(sizeof(Box) == sizeof(float) * 17);
+    LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
+        load_vec4s(&from->x + k, sizeof *from, given[k], given[k + 1], given[k + 2], given[k + 3]);
+    load_vec4s(&from->x + 13, sizeof *from, given[13], given[14], given[15], given[16]);
+}
+
+/// Moves boxes to view space, signed so that tile indices grow with x and y, and z is the view depth. Sets box.error to
+/// a bound on the error of the transform. Returns a mask of the boxes for which the bound holds.
+///
+/// given  the numbers of the boxes, see load_boxes()
+/// ball   becomes the centres and radii of the balls, the spheres that cut the boxes
+LIGHTBIN_INLINE auto move_boxes(const ViewLanes& view, const TransformLanes& transform, const Floats (&given)[17],
+                                Floats (&ball)[4], BoxLanes<Floats>& box) {
+    LIGHTBIN_UNROLL for (unsigned k = 0; k < 4; ++k)
+        ball[k] = given[k];
+    box.taper = given[16];
+    box.error = Floats{};
+    auto safe = less_equal(Floats{}, Floats{});  // a mask of all boxes
+    if (transform.to_view != nullptr) {
+        transform_spheres(transform, ball[0], ball[1], ball[2], ball[3]);
+        Floats from_origin[3], size = Floats{};
+        LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k) {
+            from_origin[k] = given[4 + k] - transform.origin[k];
+            size = size + abs(from_origin[k]);
+        }
+        safe = less_equal(size, transform.max_distance);
+        LIGHTBIN_UNROLL for (unsigned k = 7; k < 16; ++k)
+            size = size + abs(given[k]);
+        box.error = (mul(size, transform.error_rate) + transform.error_at_origin) * 2.0f;
+        LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
+            box.centre[row] = transformed_row(transform, row, from_origin[0], from_origin[1], from_origin[2]) +
+                              transform.origin_image[row];
+            LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
+                box.half_axes[axis][row] = transformed_row(transform, row, given[3 * axis + 7], given[3 * axis + 8],
+                                                           given[3 * axis + 9]);
+        }
+    } else {
+        LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
+            box.centre[row] = given[4 + row];
+            LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
+                box.half_axes[axis][row] = given[3 * axis + 7 + row];
+        }
+    }
+    const Floats signs[] = {view.sign_x, view.sign_y, view.sign_z};
+    LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
+        ball[row] = ball[row] * signs[row];
+        box.centre[row] = box.centre[row] * signs[row];
+        LIGHTBIN_UNROLL for (Floats(&h)[3] : box.half_axes)
+            h[row] = h[row] * signs[row];
+    }
+    return safe;
+}
+
+/// Returns which of the boxes whose bit in `valid` is set are good input, see Box. Counts the bad ones.
+///
+/// safe   a mask of boxes whose coordinates were seen, by their sums, to be finite, and whose half axes are not all 0
+/// given  the numbers of the boxes, see load_boxes()
+template <class Mask>
+LIGHTBIN_INLINE unsigned good_boxes(Mask safe, const Floats (&given)[17], unsigned valid, ProjectCounts& counts) {
+    const auto radius_and_taper =
+        both(both(less_equal(Floats{}, given[3]), less_equal(given[16], broadcast(1.0f))),
+             less_equal(Floats{}, given[16]));
+    if (const unsigned good = movemask(both(safe, radius_and_taper)) & valid; good == valid) return good;
+    const Floats largest = broadcast(FLT_MAX), off = broadcast(-1.0f);
+    auto in_range = radius_and_taper;
     Floats longest = Floats{};
     LIGHTBIN_UNROLL for (unsigned i = 0; i < 16; ++i) {
         if (i == 3) continue;  // a radius may be infinite
-        good = both(good, less_equal(abs(given[i]), largest));
+        in_range = both(in_range, less_equal(abs(given[i]), largest));
     }
     LIGHTBIN_UNROLL for (unsigned i = 7; i < 16; ++i)
         longest = maximum(abs(given[i]), longest);
-    return movemask(both(good, less(Floats{}, longest)));
+    const unsigned good = movemask(both(in_range, less(Floats{}, longest))) & valid;
+    const unsigned lit = ~movemask(both(less_equal(given[3], off), less_equal(off, given[3])));
+    counts.rejected += static_cast<std::uint32_t>(std::popcount(valid & ~good & lit));
+    return good;
 }
 
-/// Appends the footprints of those of the boxes first..first + count - 1 that are in view. Boxes are projected in
+/// Finds bounds on the slopes of boxes, with a perspective projection. Returns a mask of those for which float's
+/// rounding errors are small enough.
+///
+/// shown  a bit for each box that may be in view
+/// whole  a mask of the boxes off which their balls cut nothing
+template <class Mask>
+LIGHTBIN_INLINE Mask find_box_slopes(const Camera& camera, const ViewLanes& view, const BoxLanes<Floats>& box,
+                                     Floats ball_z, unsigned shown, Mask whole, BoxBounds<Floats>& bounds) {
+    const Floats nearest_ball = ball_z - bounds.radius, least = maximum(bounds.box_nearest, view.front);
+    corner_slopes(box, bounds.box_nearest, bounds.image);
+    const auto clipped = less(bounds.box_nearest, view.front);
+    if ((movemask(clipped) & shown) != 0) {
+        ImageBounds<Floats> of_clipped;
+        clipped_corner_slopes(box, least, of_clipped);
+        for (unsigned axis = 0; axis < 2; ++axis) {
+            bounds.image.low[axis] = select(clipped, of_clipped.low[axis], bounds.image.low[axis]);
+            bounds.image.high[axis] = select(clipped, of_clipped.high[axis], bounds.image.high[axis]);
+        }
+    }
+    return both(less_equal(box.error * 0x1p9f, least),
+                either(whole, less(broadcast(camera.min_float_depth), nearest_ball)));
+}
+
+/// Stores a vector of boxes, except the half spaces around them, which store_box_planes() stores.
+LIGHTBIN_INLINE void store_boxes(ViewBox* to, const BoxLanes<Floats>& box, const Floats (&ball)[4],
+                                 const BoxBounds<Floats>& bounds) {
+    const Floats(&h)[3][3] = box.half_axes;
+    store_vec4s(&to->x, sizeof *to, ball[0], ball[1], ball[2], bounds.radius);
+    store_vec4s(&to->box_x, sizeof *to, box.centre[0], box.centre[1], box.centre[2], h[0][0]);
+    store_vec4s(to->half_axes[0] + 1, sizeof *to, h[0][1], h[0][2], h[1][0], h[1][1]);
+    store_vec4s(to->half_axes[1] + 2, sizeof *to, h[1][2], h[2][0], h[2][1], h[2][2]);
+    store_vec4s(&to->taper, sizeof *to, box.taper, bounds.nearest, bounds.farthest, box.error);
+}
+
+/// Loads what store_box_planes() reads of a vector of boxes.
+inline void load_boxes(const ViewBox* from, BoxLanes<Floats>& box) {
+    Floats nearest, farthest, (&h)[3][3] = box.half_axes;
+    load_vec4s(&from->box_x, sizeof *from, box.centre[0], box.centre[1], box.centre[2], h[0][0]);
+    load_vec4s(from->half_axes[0] + 1, sizeof *from, h[0][1], h[0][2], h[1][0], h[1][1]);
+    load_vec4s(from->half_axes[1] + 2, sizeof *from, h[1][2], h[2][0], h[2][1], h[2][2]);
+    load_vec4s(&from->taper, sizeof *from, box.taper, nearest, farthest, box.error);
+}
+
+/// Appends the footprints of the boxes first..first + count - 1 that are in view. Boxes are projected in
 /// float where its rounding errors are at most 2^-9 of their depths and nothing overflows or underflows, and their
 /// balls if these cut them and lie wholly beyond the near plane; all others in double.
 template <>
@@ -242,130 +356,48 @@ inline void project_lights<LightKind::box>(const Camera& camera, const LightSour
     Box buffer[ChunkRects::size], padded[lanes];
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);
-    const Floats signs[] = {view.sign_x, view.sign_y, view.sign_z}, largest = broadcast(float_safe_max),
-                 infinite = broadcast(infinity);
-    const Floats front = broadcast(camera.near_depth);
+    const Floats largest = broadcast(float_safe_max), infinite = broadcast(infinity);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, ChunkRects::size);
-        const Box* const given_boxes = source.array != nullptr ? static_cast<const Box*>(source.array) + first : buffer;
+        const Box* const boxes = source.array != nullptr ? static_cast<const Box*>(source.array) + first : buffer;
         if (source.copy != nullptr) source.copy(source.lights, first, here, buffer);
         chunk.visible = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const std::uint32_t used = min_of(lanes, here - i);
             const unsigned valid = (1u << used) - 1;
-            const Box* const from = whole_vector(given_boxes + i, used, padded);
-            // Sixteen boxes of 68 bytes lie in 17 cache lines, more than the processor prefetches by itself.
-            // They may lie beyond the array's end, where a pointer must not be formed, but an address may be.
-            if constexpr (lanes == 16)
-                for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
-                    LIGHTBIN_PREFETCH(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(from) +
-                                                                    2 * lanes * sizeof *from + k));
-            Floats given[17];  // the numbers of each Box in their order in memory
-            static_assert(sizeof(Box) == sizeof(float) * 17);
-            LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
-                load_vec4s(&from->x + k, sizeof *from, given[k], given[k + 1], given[k + 2], given[k + 3]);
-            load_vec4s(&from->x + 13, sizeof *from, given[13], given[14], given[15], given[16]);
-            Floats ball[] = {given[0], given[1], given[2], given[3]};
+            const Box* const from = whole_vector(boxes + i, used, padded);
+            Floats given[17], ball[4];
             BoxLanes<Floats> box;
-            box.taper = given[16];
-            Floats moved_error = Floats{};
-            auto safe = less_equal(Floats{}, Floats{});  // all
-            if (source.to_view != nullptr) {
-                transform_spheres(transform, ball[0], ball[1], ball[2], ball[3]);
-                Floats from_origin[3], size = Floats{};
-                LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k) {
-                    from_origin[k] = given[4 + k] - transform.origin[k];
-                    size = size + abs(from_origin[k]);
-                }
-                safe = less_equal(size, transform.max_distance);
-                LIGHTBIN_UNROLL for (unsigned k = 7; k < 16; ++k)
-                    size = size + abs(given[k]);
-                moved_error = (mul(size, transform.error_rate) + transform.error_at_origin) * 2.0f;
-                LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
-                    box.centre[row] =
-                        transformed_row(transform, row, from_origin[0], from_origin[1], from_origin[2]) +
-                        transform.origin_image[row];
-                    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
-                        box.half_axes[axis][row] = transformed_row(transform, row, given[3 * axis + 7],
-                                                                   given[3 * axis + 8], given[3 * axis + 9]);
-                }
-            } else {
-                LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
-                    box.centre[row] = given[4 + row];
-                    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
-                        box.half_axes[axis][row] = given[3 * axis + 7 + row];
-                }
-            }
-            LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
-                ball[row] = ball[row] * signs[row];
-                box.centre[row] = box.centre[row] * signs[row];
-                LIGHTBIN_UNROLL for (Floats(&h)[3] : box.half_axes)
-                    h[row] = h[row] * signs[row];
-            }
+            load_boxes(from, given);
+            auto safe = move_boxes(view, transform, given, ball, box);
+
             const Floats centre_size = abs(ball[0]) + abs(ball[1]) + abs(ball[2]), ball_size = centre_size + ball[3];
             const auto ball_safe = safe_in_float(ball_size, ball[3]);
             const Floats axes = axes_size(box), size = size_of(box);
             safe = both(safe, both(both(less_equal(size, largest), less_equal(centre_size, largest)),
                                    less_equal(broadcast(float_safe_min), axes)));
-            // Most boxes are seen to be good by numbers that are needed anyway: sums that are not NaN or infinite, of
-            // axes that are not 0.
-            const auto in_range = both(both(less_equal(Floats{}, given[3]), less_equal(given[16], broadcast(1.0f))),
-                                       less_equal(Floats{}, given[16]));
-            unsigned good = movemask(both(safe, in_range)) & valid;
-            if (good != valid) {
-                good = good_boxes(given) & valid;
-                const Floats off = broadcast(-1.0f);
-                const unsigned lit = ~movemask(both(less_equal(given[3], off), less_equal(off, given[3])));
-                counts.rejected += static_cast<std::uint32_t>(std::popcount(valid & ~good & lit));
-            }
-            const unsigned kept =
-                good & ~movemask(both(ball_safe, out_of_view(view, ball[0], ball[1], ball[2], ball[3],
-                                                             ball[2] - ball[3], ball[2] + ball[3], ball_size)));
+            const auto culled = both(ball_safe, out_of_view(view, ball[0], ball[1], ball[2], ball[3],
+                                                            ball[2] - ball[3], ball[2] + ball[3], ball_size));
+            const unsigned kept = good_boxes(safe, given, valid, counts) & ~movemask(culled);
             if (kept == 0) continue;
 
-            box.error = mul(size, broadcast(0x1p-20f)) + moved_error;
+            box.error = mul(size, broadcast(0x1p-20f)) + box.error;
             BoxBounds<Floats> bounds;
             auto visible = find_box_depths(camera, box, ball, bounds);
             const auto whole = less_equal(infinite, bounds.radius);
             safe = both(safe, either(whole, ball_safe));
-            if (!camera.orthographic) {
-                const Floats nearest_ball = ball[2] - bounds.radius, least = maximum(bounds.box_nearest, front);
-                safe = both(safe, both(less_equal(box.error * 0x1p9f, least),
-                                       either(whole, less(broadcast(camera.min_float_depth), nearest_ball))));
-                corner_slopes(box, bounds.box_nearest, bounds.image);
-                const auto clipped = less(bounds.box_nearest, front);
-                if ((movemask(both(visible, clipped)) & kept) != 0) {
-                    ImageBounds<Floats> of_clipped;
-                    clipped_corner_slopes(box, least, of_clipped);
-                    for (unsigned axis = 0; axis < 2; ++axis) {
-                        bounds.image.low[axis] = select(clipped, of_clipped.low[axis], bounds.image.low[axis]);
-                        bounds.image.high[axis] = select(clipped, of_clipped.high[axis], bounds.image.high[axis]);
-                    }
-                }
-            }
-            if ((~movemask(whole) & kept) != 0) {
-                ImageBounds<Floats> of_balls = {{ball[0] - ball[3], ball[1] - ball[3]},
-                                                {ball[0] + ball[3], ball[1] + ball[3]}};
-                if (!camera.orthographic) {
-                    const Floats e = mul(ball[2] - ball[3], ball[2] + ball[3]), per_e = 1.0f / e;
-                    tangent_slopes(ball[0], ball[2], ball[3], e, per_e, of_balls.low[0], of_balls.high[0]);
-                    tangent_slopes(ball[1], ball[2], ball[3], e, per_e, of_balls.low[1], of_balls.high[1]);
-                }
-                visible = narrow_to_balls<float>(camera, of_balls, bounds.radius, bounds.image, visible);
-            }
+            if (!camera.orthographic)
+                safe = both(safe, find_box_slopes(camera, view, box, ball[2], movemask(visible) & kept, whole, bounds));
+            if ((~movemask(whole) & kept) != 0)
+                visible = narrow_to_balls<float>(camera, sphere_bounds(camera, ball[0], ball[1], ball[2], ball[3]),
+                                                 bounds.radius, bounds.image, visible);
             const auto in_view = tile_rects<float>(camera, bounds.image, visible, chunk.rects, i);
             const unsigned in_float = movemask(safe) & kept, in_double = kept & ~in_float;
             chunk.visible |= std::uint64_t{movemask(in_view) & in_float} << i;
+
             ViewBox* const to = source.out_boxes != nullptr ? source.out_boxes + first + i : nullptr;
-            const Floats(&h)[3][3] = box.half_axes;
-            if (to != nullptr) {
-                box.error = box.error + 0x1p-120f;
-                store_vec4s(&to->ball, sizeof *to, ball[0], ball[1], ball[2], bounds.radius);
-                store_vec4s(&to->nearest, sizeof *to, bounds.nearest, bounds.farthest, box.taper, box.error);
-                store_vec4s(to->centre, sizeof *to, box.centre[0], box.centre[1], box.centre[2], h[0][0]);
-                store_vec4s(to->half_axes[0] + 1, sizeof *to, h[0][1], h[0][2], h[1][0], h[1][1]);
-                store_vec4s(to->half_axes[1] + 2, sizeof *to, h[1][2], h[2][0], h[2][1], h[2][2]);
-            }
+            box.error = box.error + 0x1p-120f;
+            if (to != nullptr) store_boxes(to, box, ball, bounds);
             if (in_double != 0) {
                 Sphere balls[lanes];
                 store_spheres(balls, ball[0], ball[1], ball[2], ball[3]);
@@ -374,9 +406,7 @@ inline void project_lights<LightKind::box>(const Camera& camera, const LightSour
                     project_box_in_double(camera, source.to_view, balls[lane], from[lane], i + lane, chunk,
                                           to != nullptr ? to + lane : nullptr);
                 }
-                Floats nearest;
-                if (to != nullptr)
-                    load_boxes([=](std::uint32_t lane) -> const ViewBox& { return to[lane]; }, box, ball, nearest);
+                if (to != nullptr) load_boxes(to, box);
             }
             if (source.with_planes) store_box_planes(to, box);
         }

@@ -62,13 +62,13 @@ inline void project_box_in_double(const Camera& camera, const WorldToView* to_vi
     if (to == nullptr) return;
 
     // Rounding a box to float moves each point by less than 2^-24 of the box's size, see ViewBox.
-    to->ball = {ball.x, ball.y, ball.z, static_cast<float>(bounds.radius)};
+    static_cast<Box&>(*to) = {ball.x, ball.y, ball.z, static_cast<float>(bounds.radius), 0, 0, 0, {}, given.taper};
+    float* const centre[] = {&to->box_x, &to->box_y, &to->box_z};
     to->nearest = float_below(bounds.nearest);
     to->farthest = float_above(bounds.farthest);
-    to->taper = given.taper;
     to->tolerance = static_cast<float>(box.error + scalar::mul(view_size, 0x1p-19) + 0x1p-120);
     for (unsigned k = 0; k < 3; ++k) {
-        to->centre[k] = static_cast<float>(box.centre[k]);
+        *centre[k] = static_cast<float>(box.centre[k]);
         for (unsigned axis = 0; axis < 3; ++axis)
             to->half_axes[axis][k] = static_cast<float>(box.half_axes[axis][k]);
     }

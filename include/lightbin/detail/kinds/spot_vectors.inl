@@ -8,7 +8,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A vector of spots in view space, with the apexes, axes and other members of ViewSpot, one number per lane.
+/// The members of a vector of ViewSpots, one for each lane, and the sines of their half angles.
 struct SpotLanes {
     Floats apex[3], radius, axis[3], cosine, sine, tolerance;
 };
@@ -118,7 +118,7 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats slack = spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-20f));
     const auto wide = less_equal(spots.cosine, Floats{});
     const Floats sine = select(wide, broadcast(1.0f), spots.sine), cosine = maximum(spots.cosine, Floats{});
-    // Beyond 90 degrees the only plane is that of the rim: its place on the axis, from the apex on. Planes of narrower
+    // Beyond 90 degrees the only plane is the rim's: its place on the axis, from the apex on. Planes of narrower
     // cones go through the apex: 0.
     const Floats rim = mul(spots.radius, minimum(spots.cosine, Floats{}));
     Floats back[3];
@@ -137,9 +137,9 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
 
 /// Stores a vector of spots, except the half spaces around them, which store_planes() stores.
 inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
-    store_vec4s(&to->ball, sizeof *to, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
+    store_vec4s(&to->x, sizeof *to, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     store_vec4s(&to->axis_x, sizeof *to, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    store_vec4s(&to->nearest, sizeof *to, nearest, farthest, spots.sine, spots.tolerance);
+    store_vec4s(&to->nearest, sizeof *to, nearest, farthest, spots.tolerance, spots.tolerance);
 }
 
 }}}}  // namespace lightbin::detail

@@ -54,7 +54,7 @@ LIGHTBIN_INLINE auto touches_cap(const RimLanes& rim, Floats slope, Floats acros
     return less_equal(mul(rim.cosine2 - 0x1p-20f, 1.0f + mul(slope, slope)), mul(across, abs(across)));
 }
 
-/// Narrows the slopes low..high along an image axis from the bounds of the balls to those of their sectors.
+/// Narrows the slopes low..high along an image axis, which bound the balls, to bounds of the balls' sectors, the spots.
 ///
 /// c            the apex's coordinate along the image axis
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
@@ -79,40 +79,30 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double the spots of a chunk in chunk.fallback, which float can't project. A spot's tile rectangle is the
-/// intersection of those of `balls`, the sphere that its cone cuts, and `least`, its bounding_sphere().
-inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
-                                    ProjectedChunk& chunk, ProjectCounts& counts) {
-    project_in_double(camera, balls, chunk, counts);
-    ProjectedChunk second;
+/// Projects in double a spot that float can't project, as project_in_double() does a sphere. The spot's tile rectangle
+/// is the intersection of two rectangles: of `ball`, the sphere that its cone cuts, and of `least`, its bounding_sphere().
+inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, const Sphere& least, std::uint32_t i,
+                                   ChunkRects& rects, ProjectCounts& counts) {
+    ChunkRects second;
     ProjectCounts counted_before;  // the second projection counts the same bad input again
-    second.visible = 0;
-    second.fallback_count = chunk.fallback_count;
-    copy_items(chunk.fallback, chunk.fallback_count, second.fallback);
-    project_in_double(camera, least, second, counted_before);
-    for (std::uint32_t listed = 0; listed < chunk.fallback_count; ++listed) {
-        const std::uint32_t i = chunk.fallback[listed];
-        ChunkRects& rects = chunk.rects;
-        rects.x0[i] = max_of(rects.x0[i], second.rects.x0[i]);
-        rects.y0[i] = max_of(rects.y0[i], second.rects.y0[i]);
-        rects.x1[i] = min_of(rects.x1[i], second.rects.x1[i]);
-        rects.y1[i] = min_of(rects.y1[i], second.rects.y1[i]);
-        const bool visible = (second.visible >> i & 1) != 0 && rects.x0[i] <= rects.x1[i] &&
-                             rects.y0[i] <= rects.y1[i];
-        if (!visible) chunk.visible &= ~(std::uint64_t{1} << i);
-    }
+    if (!project_in_double(camera, ball, i, rects, counts) ||
+        !project_in_double(camera, least, i, second, counted_before))
+        return false;
+    rects.x0[i] = max_of(rects.x0[i], second.x0[i]);
+    rects.y0[i] = max_of(rects.y0[i], second.y0[i]);
+    rects.x1[i] = min_of(rects.x1[i], second.x1[i]);
+    rects.y1[i] = min_of(rects.y1[i], second.y1[i]);
+    return rects.x0[i] <= rects.x1[i] && rects.y0[i] <= rects.y1[i];
 }
 
-/// Finds the bounds along the image axes, in perspective, of spots whose balls lie beyond the near plane.
+/// Narrows `bounds` from the slopes of spots' balls, which lie beyond the near plane, to the slopes of the spots.
 ///
 /// size      |x| + |y| + |z| + r of the ball
 /// nearest   the spot's least view depth; at least 2^-16 of `size`
 /// across_z  the length of the cone's unit axis perpendicular to the view direction
-LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
-                                 ImageBounds<Floats>& bounds) {
-    const Floats z = spots.apex[2], e = mul(z - spots.radius, z + spots.radius), per_e = 1.0f / e;
-    tangent_slopes(spots.apex[0], z, spots.radius, e, per_e, bounds.low[0], bounds.high[0]);
-    tangent_slopes(spots.apex[1], z, spots.radius, e, per_e, bounds.low[1], bounds.high[1]);
+LIGHTBIN_INLINE void narrow_to_spots(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
+                                     ImageBounds<Floats>& bounds) {
+    const Floats z = spots.apex[2];
     const Floats along = mul(spots.radius, spots.cosine), rho = mul(spots.radius, spots.sine);
     const Floats rim_z = z + mul(along, spots.axis[2]), depth = mul(rho, across_z);
     const RimLanes rim = {1.0f / z,
@@ -144,7 +134,7 @@ inline void project_lights<LightKind::spot>(const Camera& camera, const LightSou
         here = min_of(count, ChunkRects::size);
         const Spot* const given = source.array != nullptr ? static_cast<const Spot*>(source.array) + first : buffer;
         if (source.copy != nullptr) source.copy(source.lights, first, here, buffer);
-        chunk.visible = chunk.fallback_count = 0;
+        chunk.visible = chunk.in_double = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const std::uint32_t used = min_of(lanes, here - i);
             SpotLanes spots;
@@ -173,13 +163,18 @@ inline void project_lights<LightKind::spot>(const Camera& camera, const LightSou
             } else {
                 in_float = both(in_float, both(less(broadcast(camera.min_float_depth), apex[2] - spots.radius),
                                                less(size * 0x1p-16f, nearest)));
-                find_slopes(spots, size, nearest, across_z, bounds);
+                bounds = sphere_bounds(camera, apex[0], apex[1], apex[2], spots.radius);
+                narrow_to_spots(spots, size, nearest, across_z, bounds);
             }
             const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
             if (fallback != 0) store_both_spheres(camera, spots, balls + i, least + i);
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_spots_in_double(camera, balls, least, chunk, counts);
+        for (std::uint64_t rest = chunk.in_double; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = static_cast<std::uint32_t>(std::countr_zero(rest));
+            const bool visible = project_spot_in_double(camera, balls[i], least[i], i, chunk.rects, counts);
+            chunk.visible |= std::uint64_t{visible} << i;
+        }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }

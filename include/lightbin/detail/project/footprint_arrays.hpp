@@ -23,8 +23,7 @@ struct LightSource {
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
     /// Store the half spaces around each spot or box for the depth tests, too: `around` in ViewSpot and ViewBox.
     bool with_planes;
-    /// Where copied or transformed spheres, and all spots and boxes, are stored if not null. Kernels store whole
-    /// vectors, so each array is padded.
+    /// Where copied or transformed spheres, and all spots and boxes, are stored if not null, in whole vectors.
     Sphere* out_spheres = nullptr;
     ViewSpot* out_spots = nullptr;
     ViewBox* out_boxes = nullptr;
@@ -60,11 +59,9 @@ struct ViewLights {
 };
 
 /// The footprints of the lights in view, as parallel arrays: tile columns x0..x1 and tile rows y0..y1, ends included.
-/// The footprints lie in one or more runs; ids ascend in each run and from run to run. `padding` elements past the end
-/// can be read and written, as kernels load and store whole vectors.
+/// The footprints lie in one or more runs; ids ascend in each run and from run to run. `widest_vector` elements
+/// past the end can be read and written.
 struct FootprintArrays {
-    static constexpr std::size_t padding = 64;
-
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
 
@@ -82,9 +79,9 @@ struct FootprintArrays {
 
 class FootprintBuffers {
 public:
-    /// Returns arrays for `count` footprints and FootprintArrays::padding elements more.
+    /// Returns arrays for `count` footprints and widest_vector elements more.
     FootprintArrays reserve(std::uint64_t count) {
-        const std::uint64_t capacity = count + FootprintArrays::padding;
+        const std::uint64_t capacity = count + widest_vector;
         std::uint32_t* const ids = ids_.reserve(capacity);
         return {.ids = ids,
                 .x0 = x0_.reserve(capacity),
@@ -121,29 +118,26 @@ struct ChunkRects {
 /// A chunk of lights while they are projected. A light's index is counted from the chunk's first light.
 struct ProjectedChunk {
     ChunkRects rects;
-    std::uint64_t visible;                       ///< a mask of the chunk's lights that are in view
-    std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights to be projected in double precision
-    std::uint32_t fallback_count;
+    std::uint64_t visible;    ///< a mask of the chunk's lights that are in view
+    std::uint64_t in_double;  ///< a mask of the chunk's lights to be projected in double precision
 };
 
-/// Stores bounds along the image axes of the part of a sphere beyond the near plane. The sphere is the centre (x, y, z),
-/// signed so that tile indices grow with x and y, and z is the view depth, and the radius: floats converted to double.
-void bounds_in_double(const Camera& camera, const double (&sphere)[4], double (&low)[2], double (&high)[2]);
-
-/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
-/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
-/// the listed lights that are in view. No tier has vectors for these few lights: see project/spheres_in_double.inl.
+/// Projects in double light i of a chunk, a sphere for which float has no error bound: one that crosses the near plane
+/// or contains the eye, a tiny, huge or infinite one, or bad input, which it counts. Stores its rectangle, and returns
+/// whether it is in view. No tier has vectors for these few lights: see project/spheres_in_double.inl.
 ///
-/// spheres  the spheres of all lights of the chunk, in view space
-void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk, ProjectCounts& counts);
+/// sphere  the light in view space
+bool project_in_double(const Camera& camera, const Sphere& sphere, std::uint32_t i, ChunkRects& rects,
+                       ProjectCounts& counts);
 
-/// Projects in double light i of a chunk, a box for which float has no error bound, as project_in_double() does spheres.
+/// Projects in double light i of a chunk, a box for which float has no error bound. Sets the light's bit in
+/// chunk.visible if it is in view.
 ///
 /// ball   the sphere that cuts the box, in view space after the camera's signs
 /// given  the box as it is given
 /// to     where to store the box in view space, but for ViewBox::around; may be null
-void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball,
-                                  const Box& given, std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
+void project_box_in_double(const Camera& camera, const WorldToView* to_view, const Sphere& ball, const Box& given,
+                           std::uint32_t i, ProjectedChunk& chunk, ViewBox* to);
 
 /// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
@@ -164,12 +158,11 @@ struct BinJob : FootprintSlice {
 
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.
 template <class Id> struct BinShare {
-    /// Kernels store whole vectors, and so may write up to this many elements past the end of their index list.
-    static constexpr std::size_t slack = 64;
-
     unsigned begin, end;
-    Id* out;               ///< where in memory the light index list of tile rows begin..end-1 begins
-    std::uint32_t offset;  ///< how many ids the whole grid's light index list has before those of tile row `begin`
+    /// Where in memory the light index list of tile rows begin..end-1 begins. Kernels store whole vectors of ids, and
+    /// so may write up to `widest_vector` elements past its end.
+    Id* out;
+    std::uint32_t offset;  ///< the element of the whole grid's light index list at which tile row `begin` begins
 };
 
 }}}  // namespace lightbin::detail

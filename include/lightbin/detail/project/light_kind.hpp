@@ -15,7 +15,8 @@ enum class LightKind : std::uint8_t { sphere, spot, box, mixed };
 /// Whether the kernels of a kind of lights are included. spot.hpp and box.hpp specialise it for Spots and for Boxes.
 template <LightKind kind> inline constexpr bool kernels_included = kind == LightKind::sphere;
 
-/// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for either.
+/// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for
+/// either.
 #if defined(LIGHTBIN_IMPLEMENTATION) && defined(LIGHTBIN_NO_SPOTS)
 inline constexpr bool kinds_have_spots = false;
 #else

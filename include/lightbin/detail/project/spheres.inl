@@ -67,14 +67,12 @@ LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& 
 }
 
 /// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights
-/// whose bit in `fallback` is set are listed for the double-precision path instead. `valid` has a bit for each lane
+/// whose bit in `fallback` is set are left to the double-precision path. `valid` has a bit for each lane
 /// that holds a light of the chunk.
 template <class Mask>
 LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe,
                                 unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
-    for (; fallback != 0; fallback &= fallback - 1)
-        chunk.fallback[chunk.fallback_count++] =
-            i + static_cast<std::uint32_t>(std::countr_zero(fallback));
+    chunk.in_double |= std::uint64_t{fallback} << i;
     chunk.visible |= std::uint64_t{movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid}
                      << i;
 }
@@ -135,6 +133,18 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
     return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
 }
 
+/// Returns bounds of spheres, whose view depths are z - r to z + r: with a perspective projection on slopes, for
+/// spheres wholly in front of the eye, and with an orthographic one on view-space x and y.
+LIGHTBIN_INLINE ImageBounds<Floats> sphere_bounds(const Camera& camera, Floats x, Floats y, Floats z, Floats r) {
+    ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
+    if (!camera.orthographic) {
+        const Floats e = mul(z - r, z + r), per_e = 1.0f / e;
+        tangent_slopes(x, z, r, e, per_e, bounds.low[0], bounds.high[0]);
+        tangent_slopes(y, z, r, e, per_e, bounds.low[1], bounds.high[1]);
+    }
+    return bounds;
+}
+
 /// Appends the footprints of the spheres first..first + count - 1 that are in view. Spheres are projected in float
 /// where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
 /// beyond the near plane. All other spheres, and those with a NaN, are projected in double.
@@ -154,7 +164,7 @@ inline void project_lights<LightKind::sphere>(const Camera& camera, const LightS
         Sphere* const own = source.out_spheres != nullptr ? source.out_spheres + first : buffer;
         const Sphere* const given = source.array != nullptr ? static_cast<const Sphere*>(source.array) + first : own;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own);
-        chunk.visible = chunk.fallback_count = 0;
+        chunk.visible = chunk.in_double = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const std::uint32_t used = min_of(lanes, here - i);
             Floats x, y, z, r;
@@ -170,19 +180,19 @@ inline void project_lights<LightKind::sphere>(const Camera& camera, const LightS
             const unsigned valid = (1u << used) - 1;
             if ((~movemask(culled) & valid) == 0) continue;
             auto in_float = and_not(safe, culled);
-            ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
-            if (!camera.orthographic) {
-                in_float = both(in_float, less(broadcast(camera.min_float_depth), nearest));
-                const Floats e = mul(nearest, farthest), per_e = 1.0f / e;
-                tangent_slopes(x, z, r, e, per_e, bounds.low[0], bounds.high[0]);
-                tangent_slopes(y, z, r, e, per_e, bounds.low[1], bounds.high[1]);
-            }
+            if (!camera.orthographic) in_float = both(in_float, less(broadcast(camera.min_float_depth), nearest));
+            const ImageBounds<Floats> bounds = sphere_bounds(camera, x, y, z, r);
             const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
             if (transformed && (source.out_spheres != nullptr || fallback != 0))
                 store_spheres(own + i, centre[0], centre[1], centre[2], r);
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_in_double(camera, transformed ? own : given, chunk, counts);
+        const Sphere* const spheres = transformed ? own : given;
+        for (std::uint64_t rest = chunk.in_double; rest != 0; rest &= rest - 1) {
+            const std::uint32_t i = static_cast<std::uint32_t>(std::countr_zero(rest));
+            const bool visible = project_in_double(camera, load_sphere(spheres + i), i, chunk.rects, counts);
+            chunk.visible |= std::uint64_t{visible} << i;
+        }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }

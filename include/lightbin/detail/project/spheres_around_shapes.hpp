@@ -57,7 +57,7 @@ inline Triple half_axis(const Box& box, int i) {
 }
 
 /// Returns a sphere around all corners of a box; a bad Sphere for bad input. Its centre lies on the third half axis,
-/// as far from the corners of one face as from those of the other where the half axes are at right angles.
+/// at equal distances from the corners of both faces that the axis ends in, where the half axes are at right angles.
 inline Sphere sphere_of_corners(const Box& box) {
     const Triple centre = {static_cast<double>(box.box_x), static_cast<double>(box.box_y),
                            static_cast<double>(box.box_z)};

@@ -62,6 +62,10 @@ inline void clipped_slopes(double c, double z, double r, double near_depth, doub
     high = c < 0 ? inner : outer;
 }
 
+/// Finds bounds along the image axes of the part of a sphere beyond the near plane.
+///
+/// sphere  the centre (x, y, z), signed so that tile indices grow with x and y, and z is the view depth, and the
+///         radius: floats that were converted to double
 inline void bounds_in_double(const Camera& camera, const double (&sphere)[4], double (&low)[2], double (&high)[2]) {
     // A radius of 0 is enlarged to much less than any float's rounding error, so that no square root is taken of 0.
     const double z = sphere[2], radius = sphere[3], r = max_of(radius, 0x1p-400);
@@ -77,26 +81,21 @@ inline void bounds_in_double(const Camera& camera, const double (&sphere)[4], do
     }
 }
 
-inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk,
+inline bool project_in_double(const Camera& camera, const Sphere& sphere, std::uint32_t i, ChunkRects& rects,
                               ProjectCounts& counts) {
-    for (std::uint32_t listed = 0; listed < chunk.fallback_count; ++listed) {
-        const std::uint32_t i = chunk.fallback[listed];
-        const Sphere sphere = load_sphere(spheres + i);
-        const double in_view[] = {static_cast<double>(sphere.x) * static_cast<double>(camera.x.sign),
-                                  static_cast<double>(sphere.y) * static_cast<double>(camera.y.sign),
-                                  static_cast<double>(sphere.z) * static_cast<double>(camera.z_sign),
-                                  static_cast<double>(sphere.radius)};
-        const double z = in_view[2], radius = in_view[3];
-        const bool good = is_finite(in_view[0]) && is_finite(in_view[1]) && is_finite(z) && 0 <= radius;
-        counts.rejected += !good && !is_off(radius);
-        if (!good || z + radius < static_cast<double>(camera.near_depth) ||
-            static_cast<double>(camera.far_depth) < z - radius)
-            continue;
-        scalar::ImageBounds<double> bounds;
-        bounds_in_double(camera, in_view, bounds.low, bounds.high);
-        const bool visible = scalar::tile_rects<double>(camera, bounds, true, chunk.rects, i);
-        chunk.visible |= std::uint64_t{visible} << i;
-    }
+    const double in_view[] = {static_cast<double>(sphere.x) * static_cast<double>(camera.x.sign),
+                              static_cast<double>(sphere.y) * static_cast<double>(camera.y.sign),
+                              static_cast<double>(sphere.z) * static_cast<double>(camera.z_sign),
+                              static_cast<double>(sphere.radius)};
+    const double z = in_view[2], radius = in_view[3];
+    const bool good = is_finite(in_view[0]) && is_finite(in_view[1]) && is_finite(z) && 0 <= radius;
+    counts.rejected += !good && !is_off(radius);
+    if (!good || z + radius < static_cast<double>(camera.near_depth) ||
+        static_cast<double>(camera.far_depth) < z - radius)
+        return false;
+    scalar::ImageBounds<double> bounds;
+    bounds_in_double(camera, in_view, bounds.low, bounds.high);
+    return scalar::tile_rects<double>(camera, bounds, true, rects, i);
 }
 
 }}}  // namespace lightbin::detail

@@ -20,8 +20,8 @@ concept Vec4 = requires(const Light& light) {
     requires std::same_as<std::remove_cvref_t<decltype(light.w)>, float>;
 };
 
-/// The default way to make a light of an element: what converts to Box, Spot or Sphere is converted, and a vec4 becomes the
-/// Sphere with centre (x, y, z) and radius w.
+/// The default way to make a light of an element: what converts to Box, Spot or Sphere is converted, and a vec4 becomes
+/// the Sphere with centre (x, y, z) and radius w.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||

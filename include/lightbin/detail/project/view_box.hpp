@@ -13,14 +13,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A Box in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth.
-struct ViewBox {
-    Sphere ball;              ///< the sphere that cuts the box; radius +inf where it holds all of the box
-    float nearest, farthest;  ///< view depths between which the part of the box in the sphere lies
-    float taper;              ///< see Box
-    float tolerance;  ///< how far the exact box can reach outside of this one; +inf where the box has no bounds
-    float centre[3], half_axes[3][3];  ///< see Box
-    CellPlane around[6];  ///< with a depth test against boxes, a half space for each face, see store_box_planes()
+/// A Box in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. Its radius
+/// is +inf where its ball, the sphere that cuts it, holds all of the box.
+struct ViewBox : Box {
+    float nearest, farthest;  ///< view depths between which the part of the box in the ball lies
+    float tolerance;      ///< how far the exact box can reach outside of this one; +inf where the box has no bounds
+    CellPlane around[6];  ///< with a depth test, a half space for each face of the box, see store_box_planes()
 };
 
 }}}  // namespace lightbin::detail

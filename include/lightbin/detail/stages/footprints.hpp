@@ -22,9 +22,9 @@ template <class Source> std::optional<Error> refuse(const Source& source, std::u
     return error;
 }
 
-/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is lost
-/// where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding behind
-/// each part's run of footprints could push indices beyond 32 bits.
+/// Returns into how many parts an array of lights is divided to be projected: four a thread, so that little time is
+/// lost where one thread starts late. It is 1 if there is one thread, as each part takes memory, and where the padding
+/// behind each part's run of footprints could push indices beyond 32 bits.
 inline std::size_t parts_of_array(std::size_t lights, const Parallel& parallel) {
     const std::size_t chunks = lights / ChunkRects::size + 1, workers = parallel.workers();
     return workers > 1 && lights >> 31 == 0 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
@@ -44,8 +44,8 @@ class Footprints {
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
     /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
-    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
-    /// of its bounding_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
+    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere
+    /// and of its bounding_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     template <class Source>
     LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
                                Kept kept = Kept::nothing) {
@@ -55,7 +55,7 @@ public:
         for_each_array(source, [&](const auto& lights) { run_count_ += parts_of(lights); });
         runs_.reserve(run_count_);
         part_counts_.reserve(run_count_);
-        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * FootprintArrays::padding);
+        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * widest_vector);
         std::size_t first_id = 0, first_part = 0;
         for_each_array(source, [&](const auto& lights) {
             project_array(isa, view, lights, parallel, kept, first_id, first_part, parts_of(lights));
@@ -71,10 +71,8 @@ public:
         }
     }
 
-    std::size_t lights() const { return lights_; }               ///< lights given
-    std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, as Sphere defines it
-    std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
+    std::uint32_t visible() const { return counts_.visible; }  ///< lights in view
+    std::uint64_t area() const { return counts_.area; }        ///< tiles in all rectangles
     const FootprintArrays& arrays() const { return arrays_; }
     std::span<const FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
@@ -82,7 +80,7 @@ public:
     LightCounts counts() const {
         const auto all = static_cast<std::uint32_t>(lights_);
         const ViewLights& kinds = arrays_.view_lights;
-        return {all, rejected(), all - rejected() - visible(), kinds.first_spot, kinds.first_box};
+        return {all, counts_.rejected, all - counts_.rejected - counts_.visible, kinds.first_spot, kinds.first_box};
     }
 
     FootprintSlice all() const { return {arrays_, runs(), visible(), area()}; }
@@ -127,7 +125,7 @@ private:
         };
         threads.run(parts, [&](std::size_t i) {
             const std::size_t first = first_of(i), end = first_of(i + 1), part = first_part + i;
-            const std::size_t to = first_id + first + part * FootprintArrays::padding;
+            const std::size_t to = first_id + first + part * widest_vector;
             ProjectCounts sum;
             kernel(camera_of(view), source, static_cast<std::uint32_t>(first),
                    static_cast<std::uint32_t>(end - first), arrays_.from(to), sum);

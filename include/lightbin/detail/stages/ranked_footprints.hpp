@@ -87,22 +87,22 @@ private:
             to[rank] = from[sources[rank]];
     }
 
-    /// Finds, for each z-bin, the least and the greatest rank of the lights that meet it. A light's rank is its place in
-    /// the order of the first z-bins that lights meet.
+    /// Finds, for each z-bin, the least and the greatest rank of the lights that meet it. A light's rank is its place
+    /// in the order of the first z-bins that lights meet.
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);
-        // A bin's least rank is that of the first light that ends in the bin or a later one: lights before it end too
-        // early. Lights after it begin no earlier than it. So if it begins only after the bin, no light meets the bin,
-        // which the last loop below marks as empty.
+        // A bin's least rank is the rank of the first light that ends in the bin or a later one: lights before it end
+        // too early. Lights after it begin no earlier than it. So if it begins only after the bin, no light meets the
+        // bin, which the last loop below marks as empty.
         BinRange *to = bins, *const end = bins + bin_count_;
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins + last_bins[sources[rank]]; to <= last; ++to)
                 to->least = rank;
         fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
-        // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before
-        // the bin that of the light before it, and so on. skip[rank] is how many lights directly before that one are
-        // known to have ended, so that each of them is passed only once.
+        // A bin's greatest rank is the rank of the last light that begins in the bin or an earlier one; if that light
+        // ends before the bin, of the light before it, and so on. skip[rank] is how many lights directly before the
+        // light with this rank are known to have ended, so that each of them is passed only once.
         std::uint32_t* const skip = first_bins_.data();  // reused: the first bins are no longer needed
         fill_items(skip, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {

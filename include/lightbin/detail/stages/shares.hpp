@@ -17,8 +17,8 @@ struct Share {
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The
-/// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`, its number
-/// of tiles: to write an empty tile takes as long as to write one entry of the index list.
+/// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`, its
+/// number of tiles: to write an empty tile takes as long as to write one entry of the index list.
 template <class Area> void share_steps(std::span<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
@@ -54,7 +54,7 @@ inline void share_rows(const BinJob& job, const Parallel& parallel, Buffer<std::
         for (std::uint32_t i = job.runs[run].begin; i < job.runs[run].end; ++i) {
             const std::uint64_t width = job.lights.x1[i] - job.lights.x0[i] + 1u;
             steps[job.lights.y0[i]] += width;
-            steps[job.lights.y1[i] + 1u] -= width;  // wraps below 0; the sums below do not
+            steps[job.lights.y1[i] + 1u] -= width;  // may wrap below 0, which the sums of these steps undo
         }
     });
     std::uint64_t area = 0;
@@ -78,7 +78,7 @@ std::uint64_t build_shares(const Parallel& parallel, std::span<Share> shares, Li
                            Buffer<Buffer<Id>>& memory, Id* list, Build build) {
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
-        Id* const out = i == 0 ? list : memory.data()[i].reserve(shares[i].entries + BinShare<Id>::slack);
+        Id* const out = i == 0 ? list : memory.data()[i].reserve(shares[i].entries + widest_vector);
         shares[i].entries = build(shares[i], i, out);
     });
     parallel.run(shares.size() - 1, [&](std::size_t previous) {

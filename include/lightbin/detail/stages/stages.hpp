@@ -31,8 +31,8 @@ template <Options options> struct FixedHow {
 
 /// The stages, and the memory that they keep from call to call.
 ///
-/// How  a FixedHow, or a struct with the same members, of which `is` may be set at run time. may() is constant: no code
-///      is compiled for what it denies
+/// How  a FixedHow, or a struct with the same members. Its member `is` may be set at run time. Its function may() is
+///      constant: no code is compiled for what it denies
 template <class How> class Stages {
     struct Nothing {};
     template <bool is_held, class T> using Held = std::conditional_t<is_held, T, Nothing>;

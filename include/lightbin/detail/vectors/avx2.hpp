@@ -21,45 +21,21 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 using FloatRegister = __m256;
 inline constexpr std::uint32_t lanes = 8;
 
+inline __m256 load_each_fourth(const char* from, std::size_t stride) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(reinterpret_cast<const float*>(from))),
+                                _mm_loadu_ps(reinterpret_cast<const float*>(from + 4 * stride)), 1);
+}
+inline void store_each_fourth(char* to, std::size_t stride, __m256 pair) {
+    _mm_storeu_ps(reinterpret_cast<float*>(to), _mm256_castps256_ps128(pair));
+    _mm_storeu_ps(reinterpret_cast<float*>(to + 4 * stride), _mm256_extractf128_ps(pair, 1));
+}
+
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LT_OQ)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LE_OQ)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-/// Transposes 4x4 floats in each half of four vectors.
-inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
-    const Floats low = _mm256_unpacklo_ps(a, b), high = _mm256_unpackhi_ps(a, b);
-    const Floats low_after = _mm256_unpacklo_ps(c, d), high_after = _mm256_unpackhi_ps(c, d);
-    a = _mm256_shuffle_ps(low, low_after, 0x44);
-    b = _mm256_shuffle_ps(low, low_after, 0xee);
-    c = _mm256_shuffle_ps(high, high_after, 0x44);
-    d = _mm256_shuffle_ps(high, high_after, 0xee);
-}
-inline Floats load_pair(const char* from, std::size_t stride) {  // a vec4, and the fourth after it
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(reinterpret_cast<const float*>(from))),
-                                _mm_loadu_ps(reinterpret_cast<const float*>(from + 4 * stride)), 1);
-}
-inline void store_pair(char* to, std::size_t stride, Floats pair) {
-    _mm_storeu_ps(reinterpret_cast<float*>(to), _mm256_castps256_ps128(pair));
-    _mm_storeu_ps(reinterpret_cast<float*>(to + 4 * stride), _mm256_extractf128_ps(pair, 1));
-}
-inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
-    const char* const bytes = static_cast<const char*>(from);
-    x = load_pair(bytes, stride);
-    y = load_pair(bytes + stride, stride);
-    z = load_pair(bytes + 2 * stride, stride);
-    w = load_pair(bytes + 3 * stride, stride);
-    transpose(x, y, z, w);
-}
-inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
-    char* const bytes = static_cast<char*>(to);
-    transpose(x, y, z, w);
-    store_pair(bytes, stride, x);
-    store_pair(bytes + stride, stride, y);
-    store_pair(bytes + 2 * stride, stride, z);
-    store_pair(bytes + 3 * stride, stride, w);
-}
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
     load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }

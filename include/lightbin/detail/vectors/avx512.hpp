@@ -35,6 +35,19 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 using FloatRegister = __m512;
 inline constexpr std::uint32_t lanes = 16;
 
+inline __m512 load_each_fourth(const char* from, std::size_t stride) {
+    const auto vec4 = [=](std::size_t i) { return _mm_loadu_ps(reinterpret_cast<const float*>(from + i * stride)); };
+    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
+}
+inline void store_each_fourth(char* to, std::size_t stride, __m512 quads) {
+    const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
+    _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));
+    _mm_storeu_ps(vec4(4), _mm512_extractf32x4_ps(quads, 1));
+    _mm_storeu_ps(vec4(8), _mm512_extractf32x4_ps(quads, 2));
+    _mm_storeu_ps(vec4(12), _mm512_extractf32x4_ps(quads, 3));
+}
+
 #define LIGHTBIN_LESS(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ)
 #define LIGHTBIN_LESS_EQUAL(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
@@ -44,16 +57,6 @@ inline constexpr std::uint32_t lanes = 16;
 
 inline unsigned movemask(unsigned mask) {
     return mask;
-}
-
-/// Transposes 4x4 floats in each quarter of four vectors.
-inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
-    const Floats low = _mm512_unpacklo_ps(a, b), high = _mm512_unpackhi_ps(a, b);
-    const Floats low_after = _mm512_unpacklo_ps(c, d), high_after = _mm512_unpackhi_ps(c, d);
-    a = _mm512_shuffle_ps(low, low_after, 0x44);
-    b = _mm512_shuffle_ps(low, low_after, 0xee);
-    c = _mm512_shuffle_ps(high, high_after, 0x44);
-    d = _mm512_shuffle_ps(high, high_after, 0xee);
 }
 
 /// Transposes a vector as 4x4 floats: lane 4 i + j becomes lane 4 j + i.
@@ -81,11 +84,6 @@ inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats 
     _mm512_storeu_ps(&spheres[12].x, d);
 }
 
-inline Floats load_quads(const char* from, std::size_t stride) {  // a vec4, and the fourth, eighth and twelfth after it
-    const auto vec4 = [=](std::size_t i) { return _mm_loadu_ps(reinterpret_cast<const float*>(from + i * stride)); };
-    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
-    return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
-}
 /// As in common.inl. A vector would have to wait for the stores of the spheres that are copied there to memory for it.
 template <class Index>
 void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
@@ -101,30 +99,6 @@ void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x,
     radius = four(3);
     transpose(x, y, z, radius);
 }
-inline void store_quads(char* to, std::size_t stride, __m512 quads) {
-    const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
-    _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));
-    _mm_storeu_ps(vec4(4), _mm512_extractf32x4_ps(quads, 1));
-    _mm_storeu_ps(vec4(8), _mm512_extractf32x4_ps(quads, 2));
-    _mm_storeu_ps(vec4(12), _mm512_extractf32x4_ps(quads, 3));
-}
-inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
-    const char* const bytes = static_cast<const char*>(from);
-    x = load_quads(bytes, stride);
-    y = load_quads(bytes + stride, stride);
-    z = load_quads(bytes + 2 * stride, stride);
-    w = load_quads(bytes + 3 * stride, stride);
-    transpose(x, y, z, w);
-}
-inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
-    char* const bytes = static_cast<char*>(to);
-    transpose(x, y, z, w);
-    store_quads(bytes, stride, x);
-    store_quads(bytes + stride, stride, y);
-    store_quads(bytes + 2 * stride, stride, z);
-    store_quads(bytes + 3 * stride, stride, w);
-}
-
 inline Floats ascending_bits(Floats values) {
     const __m512i bits = _mm512_castps_si512(values);
     return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));

@@ -28,7 +28,8 @@ LIGHTBIN_SIMD128_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace simd128 {
 
-inline constexpr std::uint32_t lanes = 4;
+inline constexpr std::uint32_t lanes = 4, byte_lanes = 16;
+using ByteMask = std::uint16_t;
 
 #if defined(LIGHTBIN_X86)
 #include <lightbin/detail/vectors/simd128/sse41.inl>
@@ -38,47 +39,30 @@ inline constexpr std::uint32_t lanes = 4;
 #include <lightbin/detail/vectors/simd128/wasm.inl>
 #endif
 
-struct Bytes {
-    ByteRegister v;
-};
-using ByteMask = std::uint16_t;
-inline constexpr std::uint32_t byte_lanes = 16;
-
-inline Bytes load_bytes(const std::uint8_t* from) {
-    return {load_register(from)};
+inline Bytes load_bytes(const void* from) {
+    Bytes bytes;
+    std::memcpy(&bytes.v, from, sizeof bytes.v);
+    return bytes;
 }
-inline void store_bytes(std::uint8_t* to, Bytes bytes) {
-    store_register(to, bytes.v);
-}
-inline Bytes broadcast_byte(unsigned each) {
-    return {broadcast_register(each)};
-}
-inline Bytes operator&(Bytes a, Bytes b) {
-    return {and_registers(a.v, b.v)};
-}
-inline Bytes minimum(Bytes a, Bytes b) {
-    return {min_of_bytes(a.v, b.v)};
-}
-inline Bytes subtract(Bytes a, Bytes b) {
-    return {subtract_bytes(a.v, b.v)};
+inline void store_bytes(void* to, Bytes bytes) {
+    std::memcpy(to, &bytes.v, sizeof bytes.v);
 }
 inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
-    return {shuffle_bytes(load_register(table), indices.v)};
+    return shuffle(load_bytes(table), indices);
 }
 inline Bytes keep_where(Bytes bytes, Bytes condition) {
-    return {and_registers(bytes.v, bytes_not_zero(condition.v))};
+    return bytes & all_if_not_zero(condition);
 }
 inline ByteMask not_zero(Bytes bytes) {
-    return static_cast<ByteMask>(movemask_of_bytes(bytes_not_zero(bytes.v)));
+    return static_cast<ByteMask>(movemask(all_if_not_zero(bytes)));
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    return {
-        narrow(relative_words(load_register(from), more, begin), relative_words(load_register(from + 8), more, begin))};
+    return narrow(relative_words(load_bytes(from), more, begin), relative_words(load_bytes(from + 8), more, begin));
 }
 inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
     const unsigned low = chosen & 0xffu, high = chosen >> 8;
-    store_half(to, shuffle_bytes(from.v, load_half(&set_bits.of[low])));
-    store_half(to + std::popcount(low), shuffle_bytes(high_half(from.v), load_half(&set_bits.of[high])));
+    store_half(to, shuffle(from, load_half(&set_bits.of[low])));
+    store_half(to + std::popcount(low), shuffle(high_half(from), load_half(&set_bits.of[high])));
 }
 
 /// How many bits of four are set.
@@ -99,9 +83,9 @@ inline constexpr Compress4 compress_4 = [] {
 
 /// Appends to `out` the ids, of four, whose bit in `mask` is set. Returns the end; may write 4 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_4(Id* out, const std::uint32_t* ids, unsigned mask) {
-    const ByteRegister chosen = shuffle_bytes(load_register(ids), load_register(compress_4.of[mask]));
+    const Bytes chosen = shuffle(load_bytes(ids), load_bytes(compress_4.of[mask]));
     if constexpr (sizeof(Id) == 4)
-        store_register(out, chosen);
+        store_bytes(out, chosen);
     else
         store_half(out, narrow_ids(chosen));
     return out + set_of_4[mask];

@@ -3,8 +3,10 @@
 // FloatRegister, the compiler's type of register, and
 //
 //   LIGHTBIN_MASK      the type of masks, if they have one bit for each lane; else masks are registers
-//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot; if LIGHTBIN_MASK is not
-//                      defined, also for and, or, movemask
+//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot, unpacklo, unpackhi,
+//                      shuffle; if LIGHTBIN_MASK is not defined, also for and, or, movemask
+//   load_each_fourth   a register of the vec4 at an address and of each fourth one behind it, `stride` bytes apart each
+//   store_each_fourth  the reverse of load_each_fourth
 //
 // and LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
 
@@ -79,6 +81,32 @@ inline LIGHTBIN_MASK less_equal(Floats a, Floats b) {
 }
 inline Floats select(LIGHTBIN_MASK mask, Floats a, Floats b) {
     return LIGHTBIN_SELECT(mask, a.v, b.v);
+}
+
+/// Transposes the 4x4 floats in each group of four lanes of four vectors.
+inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+    const Floats low = LIGHTBIN_OP(unpacklo)(a.v, b.v), high = LIGHTBIN_OP(unpackhi)(a.v, b.v);
+    const Floats low_after = LIGHTBIN_OP(unpacklo)(c.v, d.v), high_after = LIGHTBIN_OP(unpackhi)(c.v, d.v);
+    a = LIGHTBIN_OP(shuffle)(low.v, low_after.v, 0x44);
+    b = LIGHTBIN_OP(shuffle)(low.v, low_after.v, 0xee);
+    c = LIGHTBIN_OP(shuffle)(high.v, high_after.v, 0x44);
+    d = LIGHTBIN_OP(shuffle)(high.v, high_after.v, 0xee);
+}
+inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
+    const char* const bytes = static_cast<const char*>(from);
+    x = load_each_fourth(bytes, stride);
+    y = load_each_fourth(bytes + stride, stride);
+    z = load_each_fourth(bytes + 2 * stride, stride);
+    w = load_each_fourth(bytes + 3 * stride, stride);
+    transpose(x, y, z, w);
+}
+inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
+    char* const bytes = static_cast<char*>(to);
+    transpose(x, y, z, w);
+    store_each_fourth(bytes, stride, x);
+    store_each_fourth(bytes + stride, stride, y);
+    store_each_fourth(bytes + 2 * stride, stride, z);
+    store_each_fourth(bytes + 3 * stride, stride, w);
 }
 
 #undef LIGHTBIN_MASK

@@ -18,7 +18,8 @@
 // - in a slice (SlabCells) the squared distances along z and y are subtracted from the squared radius, and the
 //   rest is compared with that along x. Where a sphere meets a box, each difference loses at most u of the squared
 //   radius, like a sum above. Two differences that are flushed to zero lose 2^-125. The 2^-125 that is added covers
-//   these or a squared radius that is flushed, never both: the latter leaves 2^-125 - 0 - 0, which is not flushed.
+//   these or a squared radius that is flushed, never both: with a flushed radius the rest is 2^-125 - 0 - 0, which is
+//   not flushed.
 #pragma once
 
 #include <lightbin/options.hpp>
@@ -43,9 +44,6 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
 
 /// The boxes around all cells of a depth slice. They share their depths z0 to z1 and differ only by column and by row.
 struct SlabBoxes {
-    /// How many elements past the last one vectors read and write.
-    static constexpr std::size_t padding = 16;
-
     const float* ends[4] = {};  ///< four arrays: cell boxes' low and high x by tile column, low and high y by tile row
     float z0 = 0, z1 = 0;
 };

@@ -39,67 +39,63 @@ inline void store_tiles(std::uint32_t* tiles, Floats values) {
     vst1q_u32(tiles, vcvtq_u32_f32(values));
 }
 
-using ByteRegister = uint8x16_t;
+struct Bytes {
+    uint8x16_t v;
+};
 
-inline uint8x16_t load_register(const void* from) {
-    return vld1q_u8(static_cast<const std::uint8_t*>(from));
+inline Bytes load_half(const void* from) {
+    return {vcombine_u8(vld1_u8(static_cast<const std::uint8_t*>(from)), vdup_n_u8(0))};
 }
-inline void store_register(void* to, uint8x16_t a) {
-    vst1q_u8(static_cast<std::uint8_t*>(to), a);
+inline void store_half(void* to, Bytes a) {
+    vst1_u8(static_cast<std::uint8_t*>(to), vget_low_u8(a.v));
 }
-inline uint8x16_t load_half(const void* from) {
-    return vcombine_u8(vld1_u8(static_cast<const std::uint8_t*>(from)), vdup_n_u8(0));
+inline Bytes high_half(Bytes a) {
+    return {vextq_u8(a.v, a.v, 8)};
 }
-inline void store_half(void* to, uint8x16_t a) {
-    vst1_u8(static_cast<std::uint8_t*>(to), vget_low_u8(a));
+inline Bytes broadcast_byte(unsigned byte) {
+    return {vdupq_n_u8(static_cast<std::uint8_t>(byte))};
 }
-inline uint8x16_t high_half(uint8x16_t a) {
-    return vextq_u8(a, a, 8);
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {vandq_u8(a.v, b.v)};
 }
-inline uint8x16_t broadcast_register(unsigned byte) {
-    return vdupq_n_u8(static_cast<std::uint8_t>(byte));
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {vminq_u8(a.v, b.v)};
 }
-inline uint8x16_t and_registers(uint8x16_t a, uint8x16_t b) {
-    return vandq_u8(a, b);
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {vqsubq_u8(a.v, b.v)};
 }
-inline uint8x16_t min_of_bytes(uint8x16_t a, uint8x16_t b) {
-    return vminq_u8(a, b);
+inline Bytes shuffle(Bytes table, Bytes indices) {
+    return {vqtbl1q_u8(table.v, indices.v)};
 }
-inline uint8x16_t subtract_bytes(uint8x16_t a, uint8x16_t b) {
-    return vqsubq_u8(a, b);
-}
-inline uint8x16_t shuffle_bytes(uint8x16_t table, uint8x16_t indices) {
-    return vqtbl1q_u8(table, indices);
-}
-inline uint8x16_t bytes_not_zero(uint8x16_t a) {
-    return vtstq_u8(a, a);
+inline Bytes all_if_not_zero(Bytes a) {
+    return {vtstq_u8(a.v, a.v)};
 }
 /// Returns the bytes 1, 2 ... 128 twice. Each half, and-ed with 8 mask bytes and then summed, is a mask of 8 bits.
 inline uint8x16_t bit_values() {
     return vreinterpretq_u8_u64(vdupq_n_u64(0x8040201008040201));
 }
-inline unsigned movemask_of_bytes(uint8x16_t a) {
-    uint8x16_t sums = vandq_u8(a, bit_values());
+inline unsigned movemask(Bytes a) {
+    uint8x16_t sums = vandq_u8(a.v, bit_values());
     for (int i = 0; i < 3; ++i)
         sums = vpaddq_u8(sums, sums);
     return vgetq_lane_u16(vreinterpretq_u16_u8(sums), 0);
 }
-inline uint8x16_t relative_words(uint8x16_t words, unsigned more, unsigned begin) {
-    return vreinterpretq_u8_u16(
-        vqsubq_u16(vaddq_u16(vreinterpretq_u16_u8(words), vdupq_n_u16(static_cast<std::uint16_t>(more))),
-                   vdupq_n_u16(static_cast<std::uint16_t>(begin))));
+inline Bytes relative_words(Bytes words, unsigned more, unsigned begin) {
+    return {vreinterpretq_u8_u16(
+        vqsubq_u16(vaddq_u16(vreinterpretq_u16_u8(words.v), vdupq_n_u16(static_cast<std::uint16_t>(more))),
+                   vdupq_n_u16(static_cast<std::uint16_t>(begin))))};
 }
-inline uint8x16_t narrow(uint8x16_t low, uint8x16_t high) {
-    return vcombine_u8(vqmovn_u16(vreinterpretq_u16_u8(low)), vqmovn_u16(vreinterpretq_u16_u8(high)));
+inline Bytes narrow(Bytes low, Bytes high) {
+    return {vcombine_u8(vqmovn_u16(vreinterpretq_u16_u8(low.v)), vqmovn_u16(vreinterpretq_u16_u8(high.v)))};
 }
-inline uint8x16_t narrow_ids(uint8x16_t ids) {
-    return vcombine_u8(vreinterpret_u8_u16(vmovn_u32(vreinterpretq_u32_u8(ids))), vdup_n_u8(0));
+inline Bytes narrow_ids(Bytes ids) {
+    return {vcombine_u8(vreinterpret_u8_u16(vmovn_u32(vreinterpretq_u32_u8(ids.v))), vdup_n_u8(0))};
 }
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     for (unsigned bit = 0; bit < 8; ++bit) {
         uint8x16_t sums[4];
         for (unsigned i = 0; i < 4; ++i)
-            sums[i] = vandq_u8(vtstq_u8(load_register(bytes + 16 * i), broadcast_register(1u << bit)), bit_values());
+            sums[i] = vandq_u8(vtstq_u8(vld1q_u8(bytes + 16 * i), broadcast_byte(1u << bit).v), bit_values());
         sums[0] = vpaddq_u8(vpaddq_u8(sums[0], sums[1]), vpaddq_u8(sums[2], sums[3]));
         words[bit] = vgetq_lane_u64(vreinterpretq_u64_u8(vpaddq_u8(sums[0], sums[0])), 0);
     }

@@ -58,63 +58,59 @@ inline void store_tiles(std::uint32_t* tiles, Floats values) {
     wasm_v128_store(tiles, wasm_i32x4_trunc_sat_f32x4(reinterpret_cast<v128_t>(values)));
 }
 
-using ByteRegister = v128_t;
+struct Bytes {
+    v128_t v;
+};
 
-inline v128_t load_register(const void* from) {
-    return wasm_v128_load(from);
+inline Bytes load_half(const void* from) {
+    return {wasm_v128_load64_zero(from)};
 }
-inline void store_register(void* to, v128_t a) {
-    wasm_v128_store(to, a);
+inline void store_half(void* to, Bytes a) {
+    wasm_v128_store64_lane(to, a.v, 0);
 }
-inline v128_t load_half(const void* from) {
-    return wasm_v128_load64_zero(from);
+inline Bytes high_half(Bytes a) {
+    return {wasm_i64x2_shuffle(a.v, a.v, 1, 1)};
 }
-inline void store_half(void* to, v128_t a) {
-    wasm_v128_store64_lane(to, a, 0);
+inline Bytes broadcast_byte(unsigned byte) {
+    return {wasm_i8x16_splat(static_cast<std::int8_t>(byte))};
 }
-inline v128_t high_half(v128_t a) {
-    return wasm_i64x2_shuffle(a, a, 1, 1);
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {wasm_v128_and(a.v, b.v)};
 }
-inline v128_t broadcast_register(unsigned byte) {
-    return wasm_i8x16_splat(static_cast<std::int8_t>(byte));
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {wasm_u8x16_min(a.v, b.v)};
 }
-inline v128_t and_registers(v128_t a, v128_t b) {
-    return wasm_v128_and(a, b);
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {wasm_u8x16_sub_sat(a.v, b.v)};
 }
-inline v128_t min_of_bytes(v128_t a, v128_t b) {
-    return wasm_u8x16_min(a, b);
+inline Bytes shuffle(Bytes table, Bytes indices) {
+    return {wasm_i8x16_swizzle(table.v, indices.v)};
 }
-inline v128_t subtract_bytes(v128_t a, v128_t b) {
-    return wasm_u8x16_sub_sat(a, b);
+inline Bytes all_if_not_zero(Bytes a) {
+    return {wasm_i8x16_ne(a.v, wasm_i8x16_splat(0))};
 }
-inline v128_t shuffle_bytes(v128_t table, v128_t indices) {
-    return wasm_i8x16_swizzle(table, indices);
+inline unsigned movemask(Bytes a) {
+    return wasm_i8x16_bitmask(a.v);
 }
-inline v128_t bytes_not_zero(v128_t a) {
-    return wasm_i8x16_ne(a, wasm_i8x16_splat(0));
+inline Bytes relative_words(Bytes words, unsigned more, unsigned begin) {
+    return {wasm_u16x8_sub_sat(wasm_i16x8_add(words.v, wasm_i16x8_splat(static_cast<std::int16_t>(more))),
+                              wasm_i16x8_splat(static_cast<std::int16_t>(begin)))};
 }
-inline unsigned movemask_of_bytes(v128_t a) {
-    return wasm_i8x16_bitmask(a);
-}
-inline v128_t relative_words(v128_t words, unsigned more, unsigned begin) {
-    return wasm_u16x8_sub_sat(wasm_i16x8_add(words, wasm_i16x8_splat(static_cast<std::int16_t>(more))),
-                              wasm_i16x8_splat(static_cast<std::int16_t>(begin)));
-}
-inline v128_t narrow(v128_t low, v128_t high) {
+inline Bytes narrow(Bytes low, Bytes high) {
     const v128_t max = wasm_i16x8_splat(255);  // narrowing takes words as signed, and there are some from 0x8000 on
-    return wasm_u8x16_narrow_i16x8(wasm_u16x8_min(low, max), wasm_u16x8_min(high, max));
+    return {wasm_u8x16_narrow_i16x8(wasm_u16x8_min(low.v, max), wasm_u16x8_min(high.v, max))};
 }
-inline v128_t narrow_ids(v128_t ids) {
-    return wasm_u16x8_narrow_i32x4(ids, ids);
+inline Bytes narrow_ids(Bytes ids) {
+    return {wasm_u16x8_narrow_i32x4(ids.v, ids.v)};
 }
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     v128_t quarter[4];
     for (int i = 0; i < 4; ++i)
-        quarter[i] = load_register(bytes + 16 * i);
+        quarter[i] = wasm_v128_load(bytes + 16 * i);
     for (int bit = 7; bit >= 0; --bit) {
         words[bit] = 0;
         for (int i = 0; i < 4; ++i) {
-            words[bit] |= std::uint64_t{movemask_of_bytes(quarter[i])} << 16 * i;
+            words[bit] |= std::uint64_t{movemask(Bytes{quarter[i]})} << 16 * i;
             quarter[i] = wasm_i8x16_shl(quarter[i], 1);
         }
     }
