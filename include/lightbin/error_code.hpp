@@ -35,7 +35,6 @@ enum class ErrorCode : std::uint8_t {
     range_buffer_too_small,
     id_buffer_too_small,
     grids_differ,
-    ids_are_ranks,
     // Z bounds
     z_bounds_too_small,
     depth_buffer_too_small,
@@ -117,10 +116,8 @@ inline constexpr const char* error_sentences[] = {
      "fewer slices, larger tiles or fewer lights"),
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
     "the buffer for light ids holds {available} ids and {needed} are needed",
-    ("grids that share buffers, or that are united, must have the same numbers of columns and rows of tiles and of "
-     "slices: give their views the same viewport and tile size, and bin with the same slices"),
-    ("grids with z-bins cannot be united, as each numbers the lights in its own order of depth: use tiles or clusters, "
-     "or give each view a grid of its own"),
+    ("grids that share buffers must have the same numbers of columns and rows of tiles and of slices: give their "
+     "views the same viewport and tile size, and bin with the same slices"),
     "a Z bounds buffer holds {available} tiles, and the view has {needed}",
     "the depth buffer holds {available} samples and {needed} are needed",
     "a depth buffer has 1 to 8 samples a pixel, not {given}",

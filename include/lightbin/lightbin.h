@@ -111,38 +111,37 @@ typedef enum lightbin_error {
     LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 118,
     LIGHTBIN_ID_BUFFER_TOO_SMALL = 119,
     LIGHTBIN_GRIDS_DIFFER = 120,
-    LIGHTBIN_IDS_ARE_RANKS = 121,
-    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 122,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 123,
-    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 124,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL = 125,
-    LIGHTBIN_NO_SLICES = 126,
-    LIGHTBIN_SLICE_RANGE_EMPTY = 127,
-    LIGHTBIN_SLICES_DO_NOT_ASCEND = 128,
-    LIGHTBIN_TOO_MANY_CELLS = 129,
-    LIGHTBIN_TOO_FEW_WEIGHTS = 130,
-    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 131,
-    LIGHTBIN_IDS_TOO_NARROW = 132,
-    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 133,
-    LIGHTBIN_CAPACITY_UNKNOWN = 134,
-    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 135,
-    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 136,
-    LIGHTBIN_NO_STORAGE_BUFFERS = 137,
-    LIGHTBIN_NO_TEXEL_BUFFERS = 138,
-    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 139,
-    LIGHTBIN_SLOT_OUT_OF_RANGE = 140,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE = 141,
-    LIGHTBIN_NO_SETS = 142,
-    LIGHTBIN_NO_PUSH_CONSTANTS = 143,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 144,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER = 145,
-    LIGHTBIN_NO_WAVE_OPERATIONS = 146,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 147,
-    LIGHTBIN_BINDINGS_OVERLAP = 148,
-    LIGHTBIN_NOT_A_PREFIX = 149,
-    LIGHTBIN_TOO_MANY_SLICES = 150,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 151,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 152,
+    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 121,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 122,
+    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 123,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 124,
+    LIGHTBIN_NO_SLICES = 125,
+    LIGHTBIN_SLICE_RANGE_EMPTY = 126,
+    LIGHTBIN_SLICES_DO_NOT_ASCEND = 127,
+    LIGHTBIN_TOO_MANY_CELLS = 128,
+    LIGHTBIN_TOO_FEW_WEIGHTS = 129,
+    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 130,
+    LIGHTBIN_IDS_TOO_NARROW = 131,
+    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 132,
+    LIGHTBIN_CAPACITY_UNKNOWN = 133,
+    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 134,
+    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
+    LIGHTBIN_NO_STORAGE_BUFFERS = 136,
+    LIGHTBIN_NO_TEXEL_BUFFERS = 137,
+    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 138,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 139,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 140,
+    LIGHTBIN_NO_SETS = 141,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 142,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 143,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 144,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 145,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 146,
+    LIGHTBIN_BINDINGS_OVERLAP = 147,
+    LIGHTBIN_NOT_A_PREFIX = 148,
+    LIGHTBIN_TOO_MANY_SLICES = 149,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 150,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 151,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -616,24 +615,6 @@ LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const 
 LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before,
                                                 lightbin_range* ranges, uint64_t range_capacity, void* ids,
                                                 uint64_t id_capacity);
-
-/* Makes unions of grids, in memory that it keeps from call to call. */
-typedef struct lightbin_grid_union lightbin_grid_union;
-
-/* Makes a lightbin_grid_union, to be freed with lightbin_grid_union_destroy(). */
-LIGHTBIN_API lightbin_result lightbin_grid_union_create(lightbin_grid_union** grid_union);
-LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
-
-/* Makes a grid each of whose cells lists the lights that the same cell of either grid lists, each once, in ascending
- * order: one list for two views, such as two eyes. *grid is valid until the next call with this grid_union. Its counts
- * are those of `first`.
- *
- * first, second  grids of the same lights, with ids of the same width. Neither may be what this grid_union made
- *
- * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
- * LIGHTBIN_IDS_ARE_RANKS, grids with z-bins; LIGHTBIN_TOO_MANY_ENTRIES, more than 2^32 - 1. */
-LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
-                                                  const lightbin_grid* second, lightbin_grid* grid);
 
 /* Shortens the lists of grids, in memory that it keeps from call to call. */
 typedef struct lightbin_budget lightbin_budget;

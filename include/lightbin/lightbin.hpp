@@ -35,7 +35,6 @@
 //   masks.hpp         masks of the columns and rows of tiles, in place of lists
 //   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists
 //   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
-//   grid_union.hpp    one grid for two views, such as two eyes
 //   shader_reduce.hpp  shader text that does step 2 on the GPU
 //   shader_cull.hpp   shader text that does step 3 on the GPU, of lights there
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best

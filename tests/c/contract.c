@@ -466,7 +466,6 @@ static void test_grids(void) {
     lightbin_binner *binner = NULL, *sixteen = NULL;
     lightbin_view* view = NULL;
     lightbin_budget* budget = NULL;
-    lightbin_grid_union* grid_union = NULL;
     lightbin_cut cut;
     static lightbin_light_coverage coverage[light_count];
     lightbin_threads threads;
@@ -513,14 +512,6 @@ static void test_grids(void) {
     CHECK(other.ids == grid.ids &&
           other.id_count == grid.id_count); /* nothing is left out, nothing is copied */
 
-    NEEDS(lightbin_grid_union_create(NULL), "grid_union");
-    CHECK(lightbin_grid_union_create(&grid_union).error == LIGHTBIN_OK);
-    both = empty_grid();
-    NEEDS(lightbin_unite_grids(NULL, &grid, &other, &both), "grid_union");
-    NEEDS(lightbin_unite_grids(grid_union, NULL, &other, &both), "first");
-    NEEDS(lightbin_unite_grids(grid_union, &grid, NULL, &both), "second");
-    NEEDS(lightbin_unite_grids(grid_union, &grid, &other, NULL), "grid");
-
     ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
     other = grid;
     both = grid;
@@ -544,16 +535,12 @@ static void test_grids(void) {
     if (lightbin_binner_create(&options, &sixteen).error == LIGHTBIN_OK) {
         narrow = empty_grid();
         CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
-        CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &narrow, &both), LIGHTBIN_NOT_A_VALUE,
-                      "second.id_bytes"));
         CHECK(refuses(lightbin_copy_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
                       LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
     }
     free(ids);
     lightbin_budget_destroy(budget);
     lightbin_budget_destroy(NULL);
-    lightbin_grid_union_destroy(grid_union);
-    lightbin_grid_union_destroy(NULL);
     lightbin_binner_destroy(sixteen);
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);

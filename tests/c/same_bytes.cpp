@@ -8,7 +8,6 @@
 #include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
-#include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
 #include <lightbin/shader.hpp>
@@ -102,7 +101,6 @@ struct Deleter {
     void operator()(lightbin_slices* slices) const { lightbin_slices_destroy(slices); }
     void operator()(lightbin_binner* binner) const { lightbin_binner_destroy(binner); }
     void operator()(lightbin_budget* budget) const { lightbin_budget_destroy(budget); }
-    void operator()(lightbin_grid_union* grid_union) const { lightbin_grid_union_destroy(grid_union); }
     void operator()(lightbin_shader* shader) const { lightbin_shader_destroy(shader); }
 };
 template <class Handle> using Owned = std::unique_ptr<Handle, Deleter>;
@@ -206,17 +204,6 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     compare(cpp_limited.grid, limited);
     CHECK(cut.entries_cut == cpp_limited.entries_cut);
     CHECK(equal(cpp_limited.cut_in_cell, cut.cut_in_cell, cut.cell_count));
-
-    GridUnion<Id> cpp_union;
-    const auto grid_union = owned<lightbin_grid_union>(lightbin_grid_union_create);
-    auto united = sized<lightbin_grid>();
-    const auto cpp_united = cpp_union.unite(cpp_limited.grid, expected);
-    const lightbin_result unites = lightbin_unite_grids(grid_union.get(), &limited, &grid, &united);
-    REQUIRE((unites.error == LIGHTBIN_OK) == cpp_united.has_value());
-    if (cpp_united)
-        compare(*cpp_united, united);
-    else
-        CHECK(unites.error == LIGHTBIN_IDS_ARE_RANKS);
 
     std::vector<ListRange> cpp_ranges(2 * cells);
     std::vector<lightbin_range> ranges(2 * cells);

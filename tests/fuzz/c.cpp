@@ -76,8 +76,7 @@ void check_grid(const lightbin_grid& grid) {
 }
 
 /// Makes of a finished grid what can be made of it.
-void use_grid(const lightbin_grid& grid, lightbin_budget* budget, lightbin_grid_union* grid_union,
-              Bytes& bytes) {
+void use_grid(const lightbin_grid& grid, lightbin_budget* budget, Bytes& bytes) {
     std::vector<std::uint32_t> entries(bytes.flag() ? grid.lights : bytes.byte());
     std::uint32_t listed = 0;
     if (succeeded(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed)))
@@ -85,16 +84,14 @@ void use_grid(const lightbin_grid& grid, lightbin_budget* budget, lightbin_grid_
     std::vector<float> weights(bytes.flag() ? grid.lights : bytes.byte());
     for (float& weight : weights)
         weight = static_cast<float>(bytes.byte());
-    lightbin_grid limited = {}, united = {};
-    limited.size = united.size = sizeof limited;
+    lightbin_grid limited = {};
+    limited.size = sizeof limited;
     lightbin_cut cut = {};
     cut.size = sizeof cut;
     if (succeeded(lightbin_limit_grid(budget, &grid, weights.data(), weights.size(), bytes.byte(),
                                       bytes.take<std::uint16_t>(), &limited, &cut))) {
         check_grid(limited);
         require(limited.id_count + cut.entries_cut == grid.id_count, "entries that are neither kept nor cut");
-        if (succeeded(lightbin_unite_grids(grid_union, &limited, &grid, &united)))
-            require(united.id_count == grid.id_count, "a union of a grid and a part of it is another grid");
         std::vector<lightbin_range> ranges(grid.range_count + limited.range_count);
         std::vector<char> ids((grid.id_count + limited.id_count) * grid.id_bytes);
         lightbin_grid first = grid;
@@ -252,9 +249,7 @@ void use_calls(Bytes bytes) {
     bounds.min = bytes.flag() ? nullptr : bounds_memory.data(), bounds.max = bounds_memory.data() + tiles;
     bounds.tiles = tiles;
     lightbin_budget* budget = nullptr;
-    lightbin_grid_union* grid_union = nullptr;
     succeeded(lightbin_budget_create(&budget));
-    succeeded(lightbin_grid_union_create(&grid_union));
     lightbin_threads threads = {sizeof threads, bytes.byte(), run_tasks, nullptr};
     for (int call = 0; call < 3 && !bytes.empty(); ++call) {
         std::vector<std::unique_ptr<char[]>> memory;
@@ -297,7 +292,7 @@ void use_calls(Bytes bytes) {
             encoded.size = sizeof encoded;
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
             succeeded(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
-            use_grid(grid, budget, grid_union, bytes);
+            use_grid(grid, budget, bytes);
             std::vector<lightbin_light_coverage> covered(grid.lights);
             std::size_t covered_count = 0;
             if (succeeded(lightbin_coverage(view, &lights, inputs.threads, covered.data(), covered.size(),
@@ -312,7 +307,6 @@ void use_calls(Bytes bytes) {
         left += bytes.byte();
     }
     lightbin_budget_destroy(budget);
-    lightbin_grid_union_destroy(grid_union);
     lightbin_binner_destroy(binner);
     lightbin_slices_destroy(slices);
     lightbin_view_destroy(view);

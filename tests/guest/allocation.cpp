@@ -3,7 +3,6 @@
 #include "counted_new.hpp"
 
 #include <lightbin/budget.hpp>
-#include <lightbin/grid_union.hpp>
 #include <lightbin/masks.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -53,9 +52,9 @@ struct Scene {
     }
 };
 
-// Everything a frame does with one Binner, one Budget and one GridUnion; the entries it got.
+// Everything a frame does with one Binner and one Budget; the entries it got.
 template <Options options, class Id = typename Binner<options>::Id>
-std::size_t frame(Binner<options>& binner, Budget<Id>& budget, GridUnion<Id>& both, Scene& scene,
+std::size_t frame(Binner<options>& binner, Budget<Id>& budget, Scene& scene,
                   std::vector<ListRange>& ranges, std::vector<Id>& ids) {
     std::size_t entries = 0;
     const ZBounds bounds = scene.reduce();
@@ -66,7 +65,6 @@ std::size_t frame(Binner<options>& binner, Budget<Id>& budget, GridUnion<Id>& bo
         if (const auto copy = grid->copy_to(ranges, ids)) entries += copy->ids().size();
         if (const auto limited = budget.limit(*grid, scene.weights, {.per_cell = 3, .per_frame = 200}))
             entries += limited->grid.ids().size();
-        if (const auto united = both.unite(*grid, *grid)) entries += united->ids().size();
     };
     use(scene.lights);
     use(world_space(scene.lights, glm::mat4(1.0f)));
@@ -79,17 +77,16 @@ template <Options options> void check_options() {
     std::vector<typename Binner<options>::Id> ids(500 * ranges.size());
     Binner<options> binner;
     Budget<typename Binner<options>::Id> budget;
-    GridUnion<typename Binner<options>::Id> both;
 
     // The first frame must be seen to allocate, or the counter counts nothing.
     std::size_t entries = 0;
-    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) > 0);
-    entries += frame(binner, budget, both, scene, ranges, ids);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, scene, ranges, ids); }) > 0);
+    entries += frame(binner, budget, scene, ranges, ids);
     CHECK(entries > 0);
 
-    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) == 0);
-    CHECK(allocations_in([&] { entries += frame(binner, budget, both, smaller, ranges, ids); }) == 0);
-    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, scene, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, smaller, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, scene, ranges, ids); }) == 0);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
-#include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
 #include <lightbin/shader_cull.hpp>
@@ -74,8 +73,6 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     std::vector<ListRange> more_ranges(2 * ranges.size());
     std::vector<Id> more_ids(2 * ids.size());
     hash.add(value_of(grid.copy_to(more_ranges, more_ids, value_of(grid.copy_to(more_ranges, more_ids)))));
-    GridUnion<Id> both;
-    hash.add(value_of(both.unite(grid, grid)));
     hash.add(list_lengths(grid).longest);
     if constexpr (options.depth_test) {
         hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));

@@ -1,8 +1,6 @@
-// Several views in one pair of buffers, and the union of two views' lists. That encode() takes the grid of all views is
+// Several views in one pair of buffers. That encode() takes the grid of all views is
 // proven in tests/shader, whose shaders read it.
 #include "scene.hpp"
-
-#include <lightbin/grid_union.hpp>
 
 #include <iterator>
 #include <optional>
@@ -165,62 +163,4 @@ TEST_CASE("views that do not fit into buffers, or not together, are an error and
     CHECK(grid->copy_to(std::span(buffers.ranges).first(2 * ranges), std::span(buffers.ids).first(2 * ids),
                         *first));
     CHECK(buffers.unset_from(2 * ranges, 2 * ids));
-}
-
-TEST_CASE("a union of two grids lists what either lists, once and in order") {
-    const Slices slices = *Slices::exponential(5, 2, 60);
-    GridUnion<std::uint16_t> of_tiles, of_clusters;
-    for (const ImageSize size : {ImageSize{500, 300}, ImageSize{64, 64}, ImageSize{1, 1}, ImageSize{0, 9}})
-        for (const float aside : {0.0f, 0.064f, 5.0f, 1000.0f}) {
-            const View view = test::view(size, 16);
-            const auto lights = test::random_lights(900, 3);
-            const auto check = [&](auto& both, auto& left, auto& right, const auto& inputs) {
-                const auto first = left.bin(view, lights, inputs),
-                           second = right.bin(view, seen_from(aside, lights), inputs);
-                const auto united = both.unite(*first, *second);
-                REQUIRE(united);
-                const test::Lists a = test::to_lists(*first), b = test::to_lists(*second);
-                test::Lists expected(a.size());
-                for (std::size_t i = 0; i < a.size(); ++i)
-                    std::set_union(a[i].begin(), a[i].end(), b[i].begin(), b[i].end(),
-                                   std::back_inserter(expected[i]));
-                CHECK(test::to_lists(*united) == expected);
-                CHECK(united->ranges().size() == a.size());
-                CHECK(united->ids().size() == test::entries(expected));
-                CHECK(united->light_counts().lights == 900);
-                std::decay_t<decltype(both)> of_union;  // with one of both, which the union has already
-                CHECK(test::to_lists(*of_union.unite(*united, *second)) == expected);
-            };
-            constexpr Options tiles = {.ids = IdWidth::u16},
-                              clusters = {.ids = IdWidth::u16, .slicing = Slicing::clusters};
-            Binner<tiles> left, right;
-            check(of_tiles, left, right, inputs_for<tiles>({}, slices));
-            Binner<clusters> left_clusters, right_clusters;
-            check(of_clusters, left_clusters, right_clusters, inputs_for<clusters>({}, slices));
-        }
-}
-
-TEST_CASE("grids that have no union are refused by name") {
-    const auto lights = test::random_lights(100, 1);
-    Binner<> a, b;
-    GridUnion<> both;
-    const auto grid = a.bin(test::view({320, 200}, 16), lights);
-    CHECK(code_of(both.unite(*grid, *b.bin(test::view({200, 320}, 16), lights))) == ErrorCode::grids_differ);
-    const Slices slices = *Slices::linear(4, 0, 50);
-    Binner<Options{.slicing = Slicing::clusters}> clusters;
-    CHECK(code_of(both.unite(*grid, *clusters.bin(test::view({320, 200}, 16), lights, {.slices = slices}))) ==
-          ErrorCode::grids_differ);
-    Binner<Options{.slicing = Slicing::z_bins}> bins;
-    const auto ranked = bins.bin(test::view({320, 200}, 16), lights, {.slices = slices});
-    CHECK(code_of(both.unite(*ranked, *grid)) == ErrorCode::ids_are_ranks);
-    CHECK(code_of(both.unite(*grid, *ranked)) == ErrorCode::ids_are_ranks);
-    Buffers<std::uint32_t> buffers;
-    const auto one = grid->copy_to(buffers.ranges, buffers.ids),
-               two = grid->copy_to(buffers.ranges, buffers.ids, *one);
-    CHECK(code_of(both.unite(*grid, *two)) == ErrorCode::grids_differ);
-    if constexpr (sizeof(std::size_t) > 4) {
-        const LightGrid<std::uint32_t> full(20, 13, grid->ranges(),
-                                            {grid->ids().data(), std::size_t{1} << 31});
-        CHECK(code_of(both.unite(full, full)) == ErrorCode::too_many_entries);
-    }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that work on finished grids: copies, unions, budgets, encodings, statistics.
+// The C side's functions that work on finished grids: copies, budgets, encodings, statistics.
 #pragma once
 
 #include <lightbin/detail/c/binners.hpp>
@@ -7,7 +7,6 @@
 #include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
-#include <lightbin/grid_union.hpp>
 
 namespace lightbin {
 namespace c {
@@ -39,22 +38,6 @@ template <class Body> lightbin_result with_grid(const lightbin_grid* given, cons
     return refused(LIGHTBIN_NOT_A_VALUE, "grid.id_bytes", grid.id_bytes);
 }
 
-/// Calls body() with two LightGrids, whose ids must have the same width.
-///
-/// second_width  the name that the error has if the widths differ
-template <class Body>
-lightbin_result with_grids(const lightbin_grid* first, const char* first_name, const lightbin_grid* second,
-                           const char* second_name, const char* second_width, const Body& body) {
-    return with_grid(first, first_name, [&]<class Id>(const LightGrid<Id>& one) {
-        return with_grid(second, second_name, [&]<class OtherId>(const LightGrid<OtherId>& other) {
-            if constexpr (std::is_same_v<Id, OtherId>)
-                return body(one, other);
-            else
-                return refused(LIGHTBIN_NOT_A_VALUE, second_width, sizeof(OtherId));
-        });
-    });
-}
-
 /// Reads the ListFormat that the caller describes, or returns why it is refused.
 inline lightbin_result read_format(const lightbin_format* from, ListFormat& known, const char* name) {
     lightbin_format given;
@@ -67,10 +50,10 @@ inline lightbin_result read_member(const lightbin_format* given, ListFormat& kno
     return given != nullptr ? read_format(given, known, name) : succeeded();
 }
 
-/// A Budget or a GridUnion for each width of ids.
-template <template <class> class Of> struct EachWidth {
-    Of<std::uint32_t> wide = {};
-    Of<std::uint16_t> narrow = {};
+/// A Budget for each width of ids.
+struct Budgets {
+    Budget<std::uint32_t> wide = {};
+    Budget<std::uint16_t> narrow = {};
 
     template <class Id> auto& of() {
         if constexpr (sizeof(Id) == 2)
@@ -84,11 +67,7 @@ template <template <class> class Of> struct EachWidth {
 }  // namespace lightbin
 
 struct lightbin_budget {
-    lightbin::c::EachWidth<lightbin::Budget> value;
-};
-
-struct lightbin_grid_union {
-    lightbin::c::EachWidth<lightbin::GridUnion> value;
+    lightbin::c::Budgets value;
 };
 
 extern "C" {
@@ -106,30 +85,15 @@ lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* bef
         return copied ? write_grid(*copied, grid) : refused(copied.error());
     };
     if (before == nullptr) return with_grid(grid, "grid", copy);
-    return with_grids(grid, "grid", before, "before", "before.id_bytes", [&](const auto& from, const auto& first) {
-        const bool same = before->ranges == ranges && before->ids == ids;
-        return same ? copy(from, first) : refused(LIGHTBIN_OTHER_MEMORY, "before");
-    });
-}
-
-lightbin_result lightbin_grid_union_create(lightbin_grid_union** grid_union) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{grid_union, "grid_union"}}), [&] { return make_handle(grid_union); });
-}
-
-void lightbin_grid_union_destroy(lightbin_grid_union* grid_union) {
-    delete grid_union;
-}
-
-lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
-                                     const lightbin_grid* second, lightbin_grid* grid) {
-    using namespace lightbin::c;
-    return call_if(first_error(check_pointers({{grid_union, "grid_union"}}), check_size(grid, "grid")), [&] {
-        return with_grids(first, "first", second, "second", "second.id_bytes",
-                          [&]<class Id>(const lightbin::LightGrid<Id>& one, const auto& other) {
-                              const auto made = grid_union->value.of<Id>().unite(one, other);
-                              return made ? write_grid(*made, grid) : refused(made.error());
-                          });
+    return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& from) {
+        return with_grid(before, "before", [&]<class OtherId>(const lightbin::LightGrid<OtherId>& first) {
+            if constexpr (std::is_same_v<Id, OtherId>) {
+                const bool same = before->ranges == ranges && before->ids == ids;
+                return same ? copy(from, first) : refused(LIGHTBIN_OTHER_MEMORY, "before");
+            } else {
+                return refused(LIGHTBIN_NOT_A_VALUE, "before.id_bytes", sizeof(OtherId));
+            }
+        });
     });
 }
 
