@@ -140,7 +140,8 @@ private:
     struct Listed {
         std::uint32_t id, entries;
     };
-    /// The light at which a limit cuts off lighter ones' entries: its weight_order(), and how many of its entries stay.
+    /// Where a limit cuts: entries of lights with less weight than one light are left out. That light's weight_order(),
+    /// and how many of its own entries stay.
     struct Cut {
         std::uint64_t order;
         std::uint32_t left;

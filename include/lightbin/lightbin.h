@@ -202,7 +202,8 @@ typedef enum lightbin_matrix_layout {
     /* The columns of a matrix for M v, one after another: OpenGL's, GLM's, cglm's */
     LIGHTBIN_COLUMN_MAJOR = 0,
     LIGHTBIN_ROW_MAJOR = 1,  /* the rows of a matrix for M v, one after another: as it is written on paper */
-    LIGHTBIN_ROW_VECTORS = 2 /* the rows of a matrix for v M, one after another: Direct3D's */
+    /* Row after row of a matrix that is multiplied by a row vector from the left: Direct3D's */
+    LIGHTBIN_ROW_VECTORS = 2
 } lightbin_matrix_layout;
 
 /* Sixteen numbers: either floats or doubles are given, and the other pointer is null. If both are given, the floats are
@@ -469,7 +470,7 @@ typedef struct lightbin_binner_options {
     uint32_t size;
     int32_t ids; /* LIGHTBIN_U32 or LIGHTBIN_U16 */
     /* Not 0: a light is listed in a tile only if it meets the tile's Z bounds and the box, in view space, around the
-     * tile between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters. */
+     * tile between them. Needs Z bounds, or clusters, whose cells lie between the depths of a slice. */
     int32_t depth_test;
     int32_t slicing; /* a lightbin_slicing */
     int32_t isa;     /* a lightbin_isa: use no wider instructions than these; the lists are the same */

@@ -28,7 +28,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 enum class MatrixLayout : std::uint8_t {
     column_major,  ///< the columns of a matrix for M v, one after another: OpenGL's
     row_major,     ///< the rows of a matrix for M v, one after another: as it is written on paper
-    row_vectors,   ///< the rows of a matrix for v M, one after another: Direct3D's, OpenSceneGraph's
+    row_vectors,   ///< row after row of a matrix that is multiplied by a row vector from the left: Direct3D
 };
 
 /// A 4x4 matrix for column vectors (M v). Its entries are matrix[column][row].

@@ -25,7 +25,7 @@ constexpr const char* to_string(Slicing slicing) {
 struct Options {
     IdWidth ids = IdWidth::u32;  ///< u16 or u32
     /// Lists a light in a tile of its footprint only if it meets the tile's Z bounds and the view-space box around the
-    /// tile's frustum between them. Needs Z bounds or, as a slice bounds the depth of each of their cells, clusters.
+    /// tile's frustum between them. Needs Z bounds, or clusters, whose cells lie between the depths of a slice.
     bool depth_test = false;
     Slicing slicing = Slicing::none;
 };

@@ -69,7 +69,7 @@
 #define LIGHTBIN_PREFETCH(address) static_cast<void>(address)
 #endif
 
-// The file that implements lightbin.h has the code for all options, other files that for one or two. There,
+// The file that implements lightbin.h has the code for all options, where others have the code for one or two. There,
 // LIGHTBIN_SMALL marks functions that are compiled for size, as they run seldom; LIGHTBIN_ONCE marks functions that run
 // once in a call of a binner, and LIGHTBIN_SHARED_PART what the kernels of several options have in common: both stand
 // once in that file. Elsewhere the shared parts are inlined, and the other two mean nothing.

@@ -123,7 +123,8 @@ private:
         return slice;
     }
 
-    /// Divides the depths into buckets, and counts the slice boundaries before each: a histogram's prefix sum.
+    /// Divides the range of depths into buckets, and stores how many slice boundaries lie before each: the prefix sums
+    /// of a histogram.
     void fill_buckets(bool by_bits) {
         const std::span<const float> all = boundaries();
         buckets_.by_bits = by_bits;

@@ -66,7 +66,8 @@ struct BlockCells {
     DepthInterval depths;  ///< an interval that holds the view depths of the cells of all tiles in `drawn`
 };
 
-/// Returns the interval of the view depths of all cells that share a vector with a tile whose bit in `drawn` is set.
+/// Returns an interval that has the view depths of the cells of all tiles whose bit in `drawn` is set. Cells are read a
+/// vector at a time, so the depths of others in the same vectors count, too.
 inline DepthInterval depth_range(const float* boxes, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);

@@ -99,7 +99,7 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
 inline void add_tiles_met(ShaderWriter& writer, const CullOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     writer.add(std::string(R"(
-// The bits from the tile `first` to the tile `last`, of 8 tiles from `begin` on.
+// Returns 8 bits for the tiles from `begin` on: set for those from `first` to `last`.
 uint $bits_of(uint first, uint last, uint begin) {
     uint low = max(first, begin) - begin;
     uint end = min(last + 1u, begin + 8u) - min(last + 1u, begin);

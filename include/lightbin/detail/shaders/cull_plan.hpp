@@ -134,7 +134,8 @@ inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, 
         plan_transform(transform.in_float(), to);
     }
 
-    // Where there are many cells, few segments of lights suffice to occupy a GPU.
+    // The lights are divided into segments, which work groups go through side by side. Where there are many cells, few
+    // segments suffice to occupy a GPU.
     const std::uint64_t tiles = std::uint64_t{to.tiles_x} * to.tiles_y, cells = tiles * slice_count;
     const std::uint32_t steps = max_of(divided_up(to.lights, 1024), 1u),
                         groups = max_of(divided_up(to.lights, 64), 1u);

@@ -66,9 +66,9 @@ float $root(float x) {
 )");
 }
 
-/// Adds `tangents`, the bounds on c / z over a disc with the centre (c, z) and the radius r, z - r > 0:
-/// tangent_slopes() of project/spheres.inl. Errors, relative to each result: e 6u, c^2 + e 8u, its root 13u, q 17u,
-/// outer and inner 28u.
+/// Adds the shader function `tangents`, which does what tangent_slopes() of project/spheres.inl does, whose variables
+/// have the same names. Errors, relative to each result, with u = 2^-24: e 6u, c^2 + e 8u, its root 13u, q 17u, the
+/// outer and the inner slope 28u.
 inline void add_tangents(ShaderWriter& writer) {
     writer.add(R"(
 vec2 $tangents(float c, float z, float r) {

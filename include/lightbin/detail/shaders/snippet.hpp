@@ -273,8 +273,8 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     if (binned && !masks) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
 
-    // The cursor of a wave goes with all its lanes through the words that any of them looks at, and through the lights
-    // that any of them has there.
+    // With wave_loop all lanes of a wave go through the same words of masks, those that any lane needs, and in each
+    // word through the lights that any lane has.
     if (options.wave_loop && masks)
         writer.add(R"(
 struct $cursor {
