@@ -12,6 +12,17 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
+/// Returns the part of a light's sphere that lies in a box, such as that of a room, a portal's frustum or a projector.
+///
+/// box  a Box, of which everything but its sphere is taken
+inline Box clipped_sphere(const Sphere& light, Box box) {
+    box.x = light.x;
+    box.y = light.y;
+    box.z = light.z;
+    box.radius = light.radius;
+    return box;
+}
+
 namespace detail {
 
 template <> inline constexpr bool kernels_included<LightKind::box> = true;
@@ -33,26 +44,17 @@ inline Box box_with_own_sphere(const Triple& centre, const Triple (&half_axes)[3
     const double size = size_of(centre) + size_of(half_axes[0]) + size_of(half_axes[1]) + size_of(half_axes[2]);
     if (!is_finite(size)) return unlit_box(0);
     if (size > static_cast<double>(FLT_MAX)) return endless_box;
-    Box box = {0,
-               0,
-               0,
-               0,
-               static_cast<float>(centre.x),
-               static_cast<float>(centre.y),
-               static_cast<float>(centre.z),
-               {},
-               static_cast<float>(taper)};
+    Box box = {};
+    box.box_x = static_cast<float>(centre.x);
+    box.box_y = static_cast<float>(centre.y);
+    box.box_z = static_cast<float>(centre.z);
+    box.taper = static_cast<float>(taper);
     for (int i = 0; i < 3; ++i) {
         const double axis[] = {half_axes[i].x, half_axes[i].y, half_axes[i].z};
         for (int k = 0; k < 3; ++k)
             box.half_axes[i][k] = static_cast<float>(axis[k]);
     }
-    const Sphere sphere = sphere_of_corners(box);
-    box.x = sphere.x;
-    box.y = sphere.y;
-    box.z = sphere.z;
-    box.radius = sphere.radius;
-    return box;
+    return clipped_sphere(sphere_of_corners(box), box);
 }
 
 /// Returns a vector of length 1 at right angles to a vector that is not zero.
@@ -101,18 +103,6 @@ template <class Transform> Box oriented_box(const Transform& transform, double h
     for (int i = 0; i < 3; ++i)
         axes[i] = detail::scaled({m[i][0], m[i][1], m[i][2]}, half_side);
     return detail::box_with_own_sphere({m[3][0], m[3][1], m[3][2]}, axes, 1);
-}
-
-/// Returns the part of a light's sphere that lies in a box, such as that of a room, a portal's frustum or a projector.
-///
-/// room  a Box, of which everything but its sphere is taken
-inline Box clipped_sphere(const Sphere& light, const Box& room) {
-    Box box = room;
-    box.x = light.x;
-    box.y = light.y;
-    box.z = light.z;
-    box.radius = light.radius;
-    return box;
 }
 
 /// Returns the half of a sphere that lies on one side of its centre, where an area light shines: a Box that contains

@@ -110,20 +110,18 @@ decltype(auto) with_options_from(const AdvicePlan& plan, Visit& visit) {
     return visit.template operator()<options>();
 }
 
-/// Returns one side of a tile's Z bounds, or `unbounded` if that side is not given or NaN.
-inline float bound(std::span<const float> side, std::size_t tile, float unbounded) {
-    return side.empty() || std::isnan(side[tile]) ? unbounded : side[tile];
-}
-
 /// Calls visit(x, y, low, high) for the tiles in which something may be drawn: the tile's first pixel and its Z bounds.
 /// Tiles whose minimum exceeds their maximum are empty.
 template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
     const auto [width, height] = view.viewport();
     const int size = view.tile_size();
     std::size_t tile = 0;
+    const auto bound = [&](std::span<const float> side, float unbounded) {
+        return side.empty() || std::isnan(side[tile]) ? unbounded : side[tile];
+    };
     for (int y = 0; y < height; y += size)
         for (int x = 0; x < width; x += size, ++tile) {
-            const float low = bound(bounds.min, tile, -infinity), high = bound(bounds.max, tile, infinity);
+            const float low = bound(bounds.min, -infinity), high = bound(bounds.max, infinity);
             if (!(low > high)) visit(x, y, low, high);
         }
 }
@@ -186,51 +184,51 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         return std::tuple<Binner<weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
     MaskBinner mask_binner;
-    // Builds a plan's masks and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
-    // first call also counts the words that pixels look at, and how often pixels evaluate a light.
-    const auto build_masks = [&](AdvicePlan& plan, const View& grid, const auto& moved, bool first) -> std::optional<Error> {
-        const bool binned = plan.slicing == Slicing::z_bins;
-        const auto start = Clock::now();
-        const auto built = binned ? mask_binner.bin(grid, moved, slices.z_bins) : mask_binner.bin(grid, moved);
-        const std::chrono::duration<double, std::nano> time = Clock::now() - start;
-        if (!built) return built.error();
-        plan.build_ns = (std::min)(plan.build_ns, time.count());
-        if (!first) return std::nullopt;
-        plan.upload_ns = costs.upload_byte_ns * static_cast<double>(built->words().size_bytes());
-        plan.entries = built->words().size();
-        for_each_visible([&](int x, int y, float depth, double pixels) {
-            BinRange range = {0, 32 * built->mask_words() - 1};
-            if (binned) range = built->bins()[static_cast<std::size_t>(slices.z_bins.slice_at(depth))];
-            const auto column = built->column(x / plan.tile_size), row = built->row(y / plan.tile_size);
-            const std::uint32_t last = range.greatest / 32;  // a bin without lights is {1, 0}
-            for (std::uint32_t w = range.least / 32; w < column.size() && w <= last; ++w) {
-                std::uint32_t bits = column[w] & row[w];
-                if (w == range.least / 32) bits &= 0xffffffffu << range.least % 32;
-                if (w == last) bits &= 0xffffffffu >> (31 - range.greatest % 32);
-                plan.words += pixels;
-                plan.evaluations += pixels * std::popcount(bits);
-            }
-        });
-        plan.words *= costs.overdraw;
-        plan.evaluations *= costs.overdraw;
-        return std::nullopt;
-    };
-    // Does the same with the lists of a plan, of which it counts the entries.
+    // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
+    // shortest so far. A plan's first call also counts how often pixels evaluate a light or look at a word of masks.
     const auto build = [&](AdvicePlan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)
             ++grid;
-        if (plan.masks) return build_masks(plan, grid->view, moved, first);
-        const auto with = [&]<Options options>() -> std::optional<Error> {
-            constexpr bool with_bounds =
-                options.depth_test && options.slicing == Slicing::none;
-            const Slices& by = options.slicing == Slicing::clusters ? slices.clusters : slices.z_bins;
+        const bool binned = plan.slicing == Slicing::z_bins, clusters = plan.slicing == Slicing::clusters;
+        const Slices& by = clusters ? slices.clusters : slices.z_bins;
+        const auto timed = [&](const auto& bin) {
             const auto start = Clock::now();
-            const auto built = std::get<Binner<options>>(binners).bin(
-                grid->view, moved, inputs_for<options>(grid->bounds, by));
+            const auto built = bin();
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
+            const double with_bounds = time.count() + (plan.has_z_bounds() ? costs.z_bounds_ns : 0);
+            if (built) plan.build_ns = (std::min)(plan.build_ns, with_bounds);
+            return built;
+        };
+        const auto build_masks = [&]() -> std::optional<Error> {
+            const auto built = timed([&] {
+                return binned ? mask_binner.bin(grid->view, moved, by) : mask_binner.bin(grid->view, moved);
+            });
             if (!built) return built.error();
-            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
+            if (!first) return std::nullopt;
+            plan.upload_ns = costs.upload_byte_ns * static_cast<double>(built->words().size_bytes());
+            plan.entries = built->words().size();
+            for_each_visible([&](int x, int y, float depth, double pixels) {
+                BinRange range = {0, 32 * built->mask_words() - 1};
+                if (binned) range = built->bins()[static_cast<std::size_t>(by.slice_at(depth))];
+                const auto column = built->column(x / plan.tile_size), row = built->row(y / plan.tile_size);
+                const std::uint32_t last = range.greatest / 32;  // a bin without lights is {1, 0}
+                for (std::uint32_t w = range.least / 32; w < column.size() && w <= last; ++w) {
+                    std::uint32_t bits = column[w] & row[w];
+                    if (w == range.least / 32) bits &= 0xffffffffu << range.least % 32;
+                    if (w == last) bits &= 0xffffffffu >> (31 - range.greatest % 32);
+                    plan.words += pixels;
+                    plan.evaluations += pixels * std::popcount(bits);
+                }
+            });
+            return std::nullopt;
+        };
+        const auto build_lists = [&]<Options options>() -> std::optional<Error> {
+            const auto built = timed([&] {
+                return std::get<Binner<options>>(binners).bin(grid->view, moved,
+                                                              inputs_for<options>(grid->bounds, by));
+            });
+            if (!built) return built.error();
             if (!first) return std::nullopt;
             const LightRanks& ranks = built->ranks();
             plan.upload_ns = costs.upload_byte_ns *
@@ -238,17 +236,19 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
                                                  ranks.order.size_bytes() + ranks.bins.size_bytes());
             plan.entries = built->ids().size();
             for_each_visible([&](int x, int y, float depth, double pixels) {
-                const int slice = options.slicing == Slicing::none ? 0 : by.slice_at(depth);
-                auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size,
-                                             options.slicing == Slicing::clusters ? slice : 0);
-                if constexpr (options.slicing == Slicing::z_bins)
-                    list = lights_of_bin(list, ranks.bins[static_cast<std::size_t>(slice)]);
+                const int slice = binned || clusters ? by.slice_at(depth) : 0;
+                auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size, clusters ? slice : 0);
+                if (binned) list = lights_of_bin(list, ranks.bins[static_cast<std::size_t>(slice)]);
                 plan.evaluations += pixels * static_cast<double>(list.size());
             });
-            if (!with_bounds) plan.evaluations *= costs.overdraw;
             return std::nullopt;
         };
-        return with_options_from<table, base, 0>(plan, with);
+        const auto error = plan.masks ? build_masks() : with_options_from<table, base, 0>(plan, build_lists);
+        if (first && !plan.has_z_bounds()) {
+            plan.words *= costs.overdraw;
+            plan.evaluations *= costs.overdraw;
+        }
+        return error;
     };
 
     const auto& source = as_lights(lights);
@@ -260,16 +260,16 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         for (const Options& options : table) {
             const bool lacks_bounds = grid.bounds.min.empty() && grid.bounds.max.empty();
             if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) continue;
-            AdvicePlan plan = {.depth_test = options.depth_test,
-                         .slicing = options.slicing,
-                         .tile_size = grid.view.tile_size(),
-                         .build_ns = HUGE_VAL};
-            if (const auto error = build(plan, lights, true)) return *error;
-            plans.push_back(plan);
-            if (options.depth_test || options.slicing == Slicing::clusters) continue;
-            plan = {.slicing = options.slicing, .masks = true, .tile_size = plan.tile_size, .build_ns = HUGE_VAL};
-            if (const auto error = build(plan, lights, true)) return *error;
-            plans.push_back(plan);
+            for (const bool masks : {false, true}) {
+                if (masks && (options.depth_test || options.slicing == Slicing::clusters)) continue;
+                AdvicePlan plan = {.depth_test = options.depth_test,
+                                   .slicing = options.slicing,
+                                   .masks = masks,
+                                   .tile_size = grid.view.tile_size(),
+                                   .build_ns = HUGE_VAL};
+                if (const auto error = build(plan, lights, true)) return *error;
+                plans.push_back(plan);
+            }
         }
 
     // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
