@@ -65,8 +65,9 @@ public:
     /// The format of the grids, to give to SnippetOptions::format for a shader that reads them.
     static constexpr ListFormat list_format = {.ids = options.ids};
 
+    Binner() = default;
     /// isa  the widest instruction set to use, even where the machine has a wider one. The result is the same.
-    explicit Binner(Isa isa = compiled_isa) : isa_(isa) {}
+    explicit Binner(Isa isa) : isa_(isa) {}
     /// Takes over the memory and the grid of `other`, which is then like a new Binner.
     Binner(Binner&& other) = default;
     Binner& operator=(Binner&& other) = default;
@@ -92,7 +93,7 @@ public:
 
 private:
     using How = detail::FixedHow<options>;
-    Isa isa_;
+    Isa isa_ = compiled_isa;
     detail::Stages<How> stages_;
 };
 

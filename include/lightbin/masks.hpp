@@ -71,8 +71,9 @@ private:
 /// calls work as usual. Not thread-safe: use one MaskBinner per thread.
 class MaskBinner {
 public:
+    MaskBinner() = default;
     /// isa  the widest instruction set to use, even where the machine has a wider one. The result is the same.
-    explicit MaskBinner(Isa isa = compiled_isa) : isa_(isa) {}
+    explicit MaskBinner(Isa isa) : isa_(isa) {}
 
     /// Returns the masks of `lights` in `view`. Their memory belongs to the MaskBinner, and is valid until the next
     /// call.
@@ -137,7 +138,7 @@ private:
                           footprints_.counts(), bins);
     }
 
-    Isa isa_;
+    Isa isa_ = compiled_isa;
     detail::Footprints footprints_;
     detail::RankedFootprints ranked_;
     detail::Buffer<std::uint32_t> words_;
