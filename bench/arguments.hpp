@@ -31,7 +31,7 @@ public:
     /// What is left when all options are taken.
     const std::vector<std::string>& scenes() const { return words_; }
 
-    /// The same, or those of bench/scenes where none is named.
+    /// Returns the scenes named on the command line or, if there are none, those of bench/scenes.
     std::vector<std::string> scenes_or_fixtures() const {
         return words_.empty()
                    ? std::vector<std::string>{LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb",

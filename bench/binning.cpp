@@ -81,7 +81,7 @@ template <class AnyFrame> struct Set {
     }
 };
 
-/// The frames of a set of so many lights of a field, or beside the eye.
+/// Returns a set of frames with `count` lights each, which `make` makes of a seed.
 template <class MakeLights>
 Set<Frame> made_set(const std::string& name, std::size_t count, MakeLights make, Lens lens = {}) {
     return {
@@ -161,8 +161,8 @@ struct FrameViews {
     std::vector<std::size_t> view_of;
 };
 
-/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million lights against
-/// reading them.
+/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million lights
+/// against reading them.
 template <Options options> void time_build(const std::string& name, Isa isa, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const FrameViews views(frames, tile_size);
@@ -191,7 +191,8 @@ template <Options options> void time_build(const std::string& name, Isa isa, con
     if (works.size() > 3) add_result(name, isa, "reading", turns, 0, 3, set.lights);
 }
 
-/// How many times as fast threads are as one, where none waits for a core.
+/// Measures how many times as fast several threads are as one, by their processor time, so that waiting for a core does
+/// not count.
 template <Options options>
 void time_threads(const std::string& name, Isa isa, const Set<Frame>& set, std::size_t threads) {
     const std::vector<Frame>& frames = set.frames();
@@ -212,7 +213,7 @@ void time_threads(const std::string& name, Isa isa, const Set<Frame>& set, std::
     results.push_back({name, to_string(isa), "one", median(alone) / median(together), 0});
 }
 
-/// Clusters against the baseline, z-bins against the same build without them.
+/// Times a build with clusters beside the baseline, and one with z-bins beside the same build without them.
 template <Options options> void time_slices(const std::string& name, Isa isa, const Set<Frame>& set) {
     constexpr bool clusters = options.slicing == Slicing::clusters;
     constexpr Options without = [] {

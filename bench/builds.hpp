@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A build of any options, with the Z bounds and the slices that all made sets have in common.
+// Build: a Binner of any options, with Z bounds and slices that fit all generated sets of lights.
 #pragma once
 
 #include "lens.hpp"

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <random>
 
-/// The same numbers everywhere, which the standard distributions do not promise.
+/// Random numbers that are the same on every platform, which those of the standard distributions need not be.
 class Dice {
 public:
     explicit Dice(std::uint32_t seed) : engine_(seed) {}
@@ -19,7 +19,8 @@ public:
         const float x = between(low.x, high.x), y = between(low.y, high.y);
         return {x, y, between(low.z, high.z)};
     }
-    /// Spread by a factor either way, small ones more often: the shape of a lognormal, with bounds.
+    /// Returns a number from middle / factor^1.5 to middle * factor^1.5, more often near `middle`: like a lognormal, but
+    /// bounded.
     float about(float middle, float factor) {
         return middle * std::pow(factor, between(-1, 1) + between(-1, 1) / 2);
     }

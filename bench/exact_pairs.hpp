@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere, spot or box
-// meets the tile's cell.
+// What the lists ought to hold: for every tile and light of a scene, by exact arithmetic, whether the sphere, spot or
+// box meets the tile's cell.
 //
 // Decided in double precision where that proves the answer, else in rationals; of a spot, by a certificate.
 #pragma once
@@ -109,7 +109,8 @@ private:
         }
     };
 
-    /// A ball; what other lights are lies within theirs.
+    /// The sphere of a light. A spot or box lies within its sphere, so what no sphere reaches it does not reach,
+    /// either.
     struct Subject {
         Ball ball;
         template <class Light>

@@ -15,7 +15,7 @@
 /// viewport.
 struct FlatView {
     int tiles_x, tiles_y;
-    double width, height;  ///< of the viewport in tiles, the last ones counted as far as they reach
+    double width, height;  ///< of the viewport in tiles: fractions where the last tile is partial
     double scale, near_depth, far_depth;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which lights reach the point that a pixel shows: the fewest light evaluations there can be, and what no list may lack.
+// Which lights reach the point that a pixel shows: the fewest light evaluations there can be, and what no list may
+// lack.
 #pragma once
 
 #include "built.hpp"
@@ -25,8 +26,8 @@ inline Spots spots_of(const LightSet& lights) {
     return spots;
 }
 
-/// By how much a point lies within a light, in view-space units; negative outside. Of a cone not the distance to it, but
-/// of its sign.
+/// By how much a point lies within a light, in view-space units; negative outside. Of a cone not the distance to it,
+/// but of its sign.
 inline double depth_within(const lightbin::Spot& spot, const glm::dvec3& point) {
     const glm::dvec3 axis(spot.axis_x, spot.axis_y, spot.axis_z),
         d = point - glm::dvec3(spot.x, spot.y, spot.z);
@@ -108,7 +109,7 @@ private:
     std::vector<std::uint32_t> candidates_;
 };
 
-/// What a build's lists give the pixels of a reference.
+/// What the pixels of a picture read from lists or masks, beside the lights that truly reach them.
 struct Reading {
     std::uint64_t evaluations = 0, words = 0;  ///< words of masks
     std::uint64_t misses = 0;            ///< lights that reach a pixel and are not in its list

@@ -66,7 +66,7 @@ struct TiledView {
         return sum;
     }
 
-    /// The same a drawn pixel: the mean length of its list.
+    /// Light evaluations a drawn pixel: the mean length of its tile's list.
     double evaluations(std::span<const lightbin::ListRange> lists) const {
         return all_evaluations(lists) / static_cast<double>(all_drawn);
     }

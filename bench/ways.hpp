@@ -38,7 +38,7 @@ inline LightSet lights_of(const BenchScene& scene, Form form, std::uint32_t seed
 
 class Ways {
 public:
-    /// Of scenes with spots also those of spheres around them.
+    /// Returns all ways to light a scene: with spots, also those that list the spheres around the spots instead.
     static std::vector<Way> all(bool with_spots) {
         using lightbin::Options, lightbin::Slicing;
         constexpr Options box = {.depth_test = true},

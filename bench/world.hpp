@@ -46,13 +46,13 @@ inline std::vector<UserLight> structs_of(const Lights& lights) {
     return structs;
 }
 
-/// The same lights in view space and in world space. Each frame has arrays of its own, so that none is more often in the
-/// cache than another.
+/// The same lights in view space and in world space. Each frame has arrays of its own, so that none is more often in
+/// the cache than another.
 struct WorldFrame {
     Frame view;  ///< the lights as that matrix moves them, to the nearest float
     glm::mat4 view_matrix;
     Lights lights;
-    std::vector<UserLight> view_structs, structs;  ///< the same once more, or nothing
+    std::vector<UserLight> view_structs, structs;  ///< the lights as structs, in view and in world space; or empty
 };
 
 inline WorldFrame world_frame(const Lens& lens, const glm::mat4& view_matrix, Lights lights) {
@@ -62,9 +62,9 @@ inline WorldFrame world_frame(const Lens& lens, const glm::mat4& view_matrix, Li
     return frame;
 }
 
-/// Sets of a field's lights, each seen by a camera of its own, some hundreds of units from the origin. Eight of 10,000 are
-/// as many as the branch predictor takes for 48 (it begins to learn five), in 13 MB for all forms of them: more would time
-/// the memory, not the build.
+/// Sets of a field's lights, each seen by a camera of its own, some hundreds of units from the origin. Eight of 10,000
+/// are as many as the branch predictor takes for 48 (it begins to learn five), in 13 MB for all forms of them: more
+/// would time the memory, not the build.
 inline std::vector<WorldFrame> world_frames(std::size_t count, float median_radius) {
     std::vector<WorldFrame> frames;
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
@@ -84,8 +84,8 @@ inline std::vector<WorldFrame> world_frames(std::size_t count, float median_radi
     return frames;
 }
 
-/// Bevy's stress test of that name: 100,000 small lights on a sphere around the eye, which turns by 0.15 radians a second
-/// at 60 frames a second.
+/// Bevy's stress test of that name: 100,000 small lights on a sphere around the eye, which turns by 0.15 radians a
+/// second at 60 frames a second.
 inline std::vector<WorldFrame> many_lights_frames() {
     constexpr std::size_t count = 100000;
     const double golden_ratio = (1 + std::sqrt(5.0)) / 2, pi = std::acos(-1.0);

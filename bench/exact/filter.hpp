@@ -78,7 +78,7 @@ public:
         if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
-    /// The same of the wedge of whole columns or rows of tiles.
+    /// Whether a sphere meets the wedge that whole columns or rows of tiles show; nothing if doubles cannot tell.
     std::optional<bool> meets_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
         return meets_wedge(0, {column(x0), column(x1)}, depths, ball);
     }

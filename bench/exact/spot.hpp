@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether a spot meets a cell: a verdict by certificate. Floating point finds one, rational arithmetic checks it, and what
-// has none is left open.
+// Whether a spot meets a cell: a verdict by certificate. Floating point finds one, rational arithmetic checks it, and
+// what has none is left open.
 //
 // A spot is a ball and a cone from its centre, the apex. Cell, ball and cone are convex for half angles to 90 degrees:
 // - They meet: a rational point lies in all three.
@@ -55,7 +55,7 @@ struct Separation {
     Vector ball_part;               ///< u
 };
 
-/// The point is in the cell, the ball and the cone.
+/// Returns whether a point lies in the cell, in the spot's sphere and in its cone, so that it proves that they meet.
 inline bool proves_meeting(const std::vector<HalfSpace>& cell, const ExactSpot& spot, const Vector& point) {
     for (const HalfSpace& h : cell)
         if (h.at(point) < 0) return false;
@@ -166,8 +166,8 @@ private:
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     }
 
-    /// The range, and where that is out of proportion to the cell and blurs it, the part of the spot that reaches as far as
-    /// its planes do.
+    /// The range, and where that is out of proportion to the cell and blurs it, the part of the spot that reaches as
+    /// far as its planes do.
     std::vector<double> scales() const {
         std::vector<double> away;
         for (const Face& face : faces_)
@@ -260,8 +260,8 @@ private:
         for (std::size_t i = 0; i < cell_.size(); ++i)
             if (!by.weights[i].is_zero()) n = n + by.weights[i] * cell_[i].a;
         const Support reach = support(flat(n));
-        // No rounding at all where all of n is of one part. Else what is taken from it must be within the cone's bounds,
-        // so its part along the axis, of which multiples are exact, is made a little larger.
+        // No rounding at all where all of n is of one part. Else what is taken from it must be within the cone's
+        // bounds, so its part along the axis, of which multiples are exact, is made a little larger.
         if (radius_ == 0 || (reach.back == 0 && length(reach.lateral) == 0)) {
             by.ball_part = n;
         } else {
@@ -272,8 +272,8 @@ private:
         return proves_apart(cell_, spot_, by);
     }
 
-    /// By the part of the axis that is in the cell, as all of the axis is in the cone. Without rounding: of a half angle of 0
-    /// nothing but the axis is left, which often lies in a cell's side. Of that no question stays open.
+    /// By the part of the axis that is in the cell, as all of the axis is in the cone. Without rounding: of a half
+    /// angle of 0 nothing but the axis is left, which often lies in a cell's side. Of that no question stays open.
     std::optional<bool> by_axis() const {
         constexpr std::size_t none = static_cast<std::size_t>(-1);
         std::size_t first = none, last = none;
@@ -307,9 +307,9 @@ private:
     }
 
     //--------------------------------------------------------------------------------------------------------
-    // What the search below never quite gets to, without rounding: cells that are nothing beside their distance, for which
-    // the cone's side is a plane; half angles a hair below 90 degrees, of which the cone is all but a half-space; and balls
-    // that touch.
+    // What the search below never quite gets to, without rounding: cells that are nothing beside their distance, for
+    // which the cone's side is a plane; half angles a hair below 90 degrees, of which the cone is all but a half-space;
+    // and balls that touch.
 
     /// Calls visit(i, j, k) for three faces that meet in a point, until it returns true.
     template <class Visit> bool any_corner(Visit visit) const {
@@ -351,8 +351,8 @@ private:
         return weights;
     }
 
-    /// By faces whose weighted sum is the axis turned round. Where the apex is on those, they are enough together with a
-    /// little of one that it is beyond.
+    /// By faces whose weighted sum is the axis turned round. Where the apex is on those, they are enough together with
+    /// a little of one that it is beyond.
     bool apart_from_half_space() const {
         if (cosine_ > 0x1p-10) return false;
         return any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
@@ -369,7 +369,8 @@ private:
         });
     }
 
-    /// By the point of the cell that is nearest to the apex, and those nearest to the middle and the end of the axis.
+    /// Tries to prove that a spot meets the cell by the points of the cell nearest to the apex, the middle and the end
+    /// of its axis.
     std::optional<bool> by_nearest_points() const {
         const auto nearest = nearest_point(cell_, spot_.ball.centre);
         if (!nearest) return false;
@@ -408,9 +409,9 @@ private:
     }
 
     //--------------------------------------------------------------------------------------------------------
-    // The point that is deepest in all three, or least far out of them, by an interior-point method: a greatest t such that
-    // v is t inside of each face, of a ball and of the cone's side, with the ball's radius as unit. The barrier is the sum
-    // of -log of
+    // The point that is deepest in all three, or least far out of them, by an interior-point method: a greatest t such
+    // that v is t inside of each face, of a ball and of the cone's side, with the ball's radius as unit. The barrier is
+    // the sum of -log of
     //     n.v + offset - t,   (1 - t)^2 - |v|^2   and   (sine v.axis - t)^2 - cosine^2 |v - (v.axis) axis|^2,
     // which is self-concordant; the weights of the faces in its derivative go to those of the best separation.
 
@@ -448,7 +449,7 @@ private:
         return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return slack(f, at) > 0; });
     }
 
-    /// The same of the cell itself, but for a plane that it lies in.
+    /// Whether a point lies inside of the light and of the cell, not counting the planes that it lies in.
     bool inside_but_for_planes(Four at) const {
         at[3] = 0;
         if (!(ball_value(at) > 0) || !(side_value(at) > 0)) return false;

@@ -66,7 +66,7 @@ public:
     lightbin::View view(int tile_size = 0) const;  ///< 0: that of the settings
     /// In view space, in the order in which they begin in depth: so ids and ranks in depth ascend together.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
-    /// Of the lights in view, by ascending id. Tile size 0: that of the settings
+    /// Returns the footprints of the lights in view, by ascending id. Tile size 0 stands for the settings' tile size.
     std::vector<LightFootprint> footprints(int tile_size = 0) const;
     /// Hands the shaders these lights in this order: for lists of ranks.
     void order_lights(std::span<const std::uint32_t> order);

@@ -18,7 +18,7 @@ struct Difference {
     std::size_t entries = 0;    ///< of the Binner
     std::size_t missed = 0;     ///< of them, those that the GPU lacks
     std::size_t more = 0;       ///< entries of the GPU alone
-    std::size_t unordered = 0;  ///< ids of the GPU not above the one before, and lists that don't join
+    std::size_t unordered = 0;  ///< ids that do not ascend, and lists that do not begin where another ends
 
     bool right() const { return missed == 0 && unordered == 0; }
     Difference& operator+=(const Difference& other) {

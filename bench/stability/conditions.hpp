@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Families of stiff and extreme conditions, each by decade: what is varied, why that is hard, and a generator of scenes.
-// Lights are aimed in double precision, and only aimed: what is asked about are the floats that come out.
+// Families of stiff and extreme conditions, each by decade: what is varied, why that is hard, and a generator of
+// scenes. Lights are aimed in double precision, and only aimed: what is asked about are the floats that come out.
 #pragma once
 
 #include "../../tests/oracle/families.hpp"
@@ -105,7 +105,7 @@ inline Light ending_in_view(const Aim& aim, Random& random, double d, double r) 
     return aim.light(c[0], c[1], d, r);
 }
 
-/// The same 1 to 180 units away, of a part of the picture.
+/// Lights 1 to 180 units away, in a part of the picture.
 inline Light ordinary_light(const Aim& aim, Random& random, double unit = 1) {
     const double d = unit * random.power_of_two(0, 7.5);
     return ending_in_view(aim, random, d, std::min(aim.half_height(d), d) * random.power_of_two(-6, -1));
@@ -127,8 +127,8 @@ inline Scene grazing(Random& random, double tangent, std::size_t lights) {
     const double t = tangent * static_cast<double>(r);
     Scene scene = scene_of(lens_from(t / 100, random));
     const Aim aim(scene.camera);
-    // Floats as large as r come no nearer to r^2 + t^2 = c^2 + z^2 than by 2^-24 of it. So below that |c| is a few units
-    // in the last place off the radius, and z, which is small then, makes up for the rest.
+    // Floats as large as r come no nearer to r^2 + t^2 = c^2 + z^2 than by 2^-24 of it. So below that |c| is a few
+    // units in the last place off the radius, and z, which is small then, makes up for the rest.
     const double ulp = 0x1p-23, most = std::min(1e5, 0x1p45 * tangent * tangent);
     const double R = static_cast<double>(r), side = random.sign();
     for (std::size_t i = 0; i < lights; ++i) {
@@ -241,7 +241,7 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
 /// A light a few pixels wide, tangent to the edge of a one-pixel tile.
 inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
     const double d = aim.depth(random), at = std::max(d, aim.unit);
-    // The radius whose image is a pixel: far off the axis an image is longer.
+    // The radius of a sphere there whose image is one pixel wide.
     double pixel = oracle::infinite, c[2], edge[2];
     for (int axis = 0; axis < 2; ++axis) {
         edge[axis] = aim.tile_edge(axis, random);

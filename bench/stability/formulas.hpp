@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The textbooks' formulas, as they are printed, in the precision of `Real`: the bounds of spheres in slopes along one image
-// axis, and the slice of a depth.
+// The textbooks' formulas, as they are printed, in the precision of `Real`: the bounds of spheres in slopes along one
+// image axis, and the slice of a depth.
 #pragma once
 
 #include <algorithm>
@@ -42,8 +42,8 @@ struct Quadratic {
     }
 };
 
-/// The tangent planes' normals: Lengyel, "Mathematics for 3D Game Programming", 2002; Lauritzen, "Deferred Rendering for
-/// Current and Future Rendering Pipelines", SIGGRAPH 2010.
+/// The tangent planes' normals: Lengyel, "Mathematics for 3D Game Programming", 2002; Lauritzen, "Deferred Rendering
+/// for Current and Future Rendering Pipelines", SIGGRAPH 2010.
 struct LengyelLauritzen {
     static constexpr const char* name = "Lengyel-Lauritzen";
     static constexpr bool knows_near_plane = false;
@@ -60,7 +60,8 @@ struct LengyelLauritzen {
 
 // The slice of a depth, of `count` from near to far, each as many times as deep as the one before it.
 
-/// Sousa and Geffroy, "The devil is in the details: idTech 666", SIGGRAPH 2016: a logarithm, a product, a sum.
+/// The slice of a depth by one logarithm, one product and one sum: Sousa and Geffroy, "The devil is in the details:
+/// idTech 666", SIGGRAPH 2016.
 struct LogScaleBias {
     static constexpr const char* name = "log z * a + b";
     template <class Real> static Real slice(Real z, Real near_depth, Real far_depth, int count) {

@@ -31,7 +31,7 @@ namespace stability {
 struct Tally {
     std::string formula, precision;
     std::uint64_t lights = 0;       ///< that the formula is for: most know no sphere that the near plane cuts
-    double error = 0;               ///< the largest, of a bound within the picture
+    double error = 0;               ///< the largest error of a bound within the picture
     std::uint64_t exact = 0;        ///< tiles, or slices, of the exact rectangles
     std::uint64_t missed_bare = 0;  ///< of those, without a margin
     std::uint64_t missed_same = 0;  ///< with the library's margin
@@ -66,7 +66,7 @@ struct Effort {
     double seconds;              ///< for each time, at least
 };
 
-/// Pixels along both image axes, as a formula has them: anywhere, or NaN.
+/// The bounds, in pixels along both image axes, that a formula computes. They may lie outside of the image or be NaN.
 struct Bounds {
     double low[2], high[2];
 };
@@ -103,7 +103,7 @@ struct ScreenFormula {
     bool knows_near_plane;
     /// The bounds of light i.
     Bounds (*bounds)(const Scene&, std::size_t i, const oracle::ScreenBounds&);
-    /// Both axes of each light, from floats in memory to the sum of four bounds.
+    /// Computes the bounds of all lights along both axes by a formula, and returns their sum.
     double (*sum)(const Scene&);
 };
 struct SliceFormula {
@@ -206,8 +206,8 @@ private:
         return *view;
     }
 
-    /// A scene's lights in view space: exactly, but that the radius is made smaller by what a matrix of doubles may not be a
-    /// rotation by, so that what is asked for is no more than the library promises.
+    /// A scene's lights in view space: exactly, but that the radius is made smaller by what a matrix of doubles may not
+    /// be a rotation by, so that what is asked for is no more than the library promises.
     static oracle::CameraBall exact_ball(const oracle::Oracle& oracle, const Scene& scene,
                                          const Light& light) {
         oracle::Ball ball = oracle::exact_ball(light.x, light.y, light.z, light.w);
@@ -420,8 +420,8 @@ private:
         return *slices;
     }
 
-    /// `needed` are the slices of depths within the light, where a boundary's slice is the one behind it, as a shader finds
-    /// it; `touched` also has the one that a light ends at. Either serves.
+    /// `needed` are the slices of depths within the light, where a boundary's slice is the one behind it, as a shader
+    /// finds it; `touched` also has the one that a light ends at. Either serves.
     static void add_slices(Tally& tally, const SliceRange& needed, const SliceRange& touched,
                            const SliceRange& found) {
         const auto size = [](const SliceRange& range) {

@@ -173,7 +173,7 @@ void check_text(const std::string& text, const std::string& prefix) {
     require(open.empty(), "a bracket is left open", text);
 }
 
-/// The bindings are those wanted; the line that declares each has its slot, and none has another's.
+/// Checks that a text has the expected bindings, and that the line that declares each has its slot and no other.
 void check_bindings(const ShaderText& made, const Question& question) {
     const Language language(question.language);
     const std::string& text = made.text;
@@ -378,7 +378,7 @@ void fuzz_reduction(Bytes& bytes) {
     check(reduce_shader(options), question);
 }
 
-/// The buffers of a pass, in the order of its text.
+/// Returns the buffers that a pass of cull_shader() binds, in the order in which its text declares them.
 std::vector<Wanted> buffers_of(CullPass pass, const CullOptions& options) {
     std::vector<Wanted> wanted;
     const auto want = [&](bool condition, const char* name, ShaderSlot slot) {

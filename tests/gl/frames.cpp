@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every technique of bench/frames against the picture of every light in every fragment, and its count of light evaluations
-// against lists and depths that are gone through here.
+// Every technique of bench/frames against the picture of every light in every fragment, and its count of light
+// evaluations against lists and depths that are gone through here.
 #include "cases.hpp"
 #include "passes.hpp"
 #include "runner.hpp"
@@ -184,7 +184,7 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(counted(tiled_forward_pre_z(ZEnds::both)) < listed * 11 / 10);
     CHECK(counted(forward_every_light()) >= pixels * scene.lights.size());
     CHECK(counted(tiled_forward()) > listed);
-    // A ball of triangles that holds the light's.
+    // The stencil is drawn by a polyhedron around the light's sphere, so it marks a few more pixels.
     const std::uint64_t marked = counted(deferred_stencil(32));
     CHECK(marked >= reached);
     CHECK(marked <= nearly_reached);

@@ -53,7 +53,7 @@ inline std::string everything_glb() {
     return glb({std::istreambuf_iterator<char>(json), {}}, binary);
 }
 
-// The same file with the first `from` in it replaced by `to`, padded to the same length so that its sizes
+// Returns a file with the first `from` in it replaced by `to`, padded to the same length so that its sizes
 // stay right.
 inline std::string with(std::string file, const std::string& from, std::string to) {
     const std::size_t place = file.find(from);

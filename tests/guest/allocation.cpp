@@ -52,7 +52,7 @@ struct Scene {
     }
 };
 
-// Everything a frame does with one Binner and one Budget; the entries it got.
+// Does all that a frame does with a Binner and a Budget, and returns the number of entries.
 template <Options options, class Id = typename Binner<options>::Id>
 std::size_t frame(Binner<options>& binner, Budget<Id>& budget, Scene& scene,
                   std::vector<ListRange>& ranges, std::vector<Id>& ids) {

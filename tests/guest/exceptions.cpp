@@ -1,5 +1,5 @@
-// An exception anywhere in a call, be it for want of memory or from the caller's own functions: the next call is as any
-// other, whether it is the same again or one that needs less.
+// An exception anywhere in a call of a Binner, from `new` or from the caller's functions: the next call gives the right
+// lists, whether its input is the same or smaller.
 #include "../unit/scene.hpp"
 #include "counted_new.hpp"
 

@@ -1,4 +1,4 @@
-// What the guide's blocks of code take for granted: a reader's own renderer.
+// What the blocks of code in docs/ use without defining it: functions and objects of the reader's own renderer.
 #pragma once
 
 #include <lightbin/lightbin.hpp>

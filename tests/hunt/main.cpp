@@ -164,7 +164,7 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     return out;
 }
 
-/// The same of masks: a tile's list has the lights that both its column and its row have.
+/// Makes lists from the masks of a MaskBinner: a tile's list has the lights that both its column and its row have.
 template <Slicing slicing> lightbin::Result<Grid> bin_masks(const Input& input, Isa isa) {
     constexpr bool ranked = slicing == Slicing::z_bins;
     static std::map<Isa, lightbin::MaskBinner> binners;

@@ -112,8 +112,8 @@ public:
             examine_tile(tile, in_tile[tile], format);
     }
 
-    /// One sample a tile, and the depth of the fragment that left it: it need not be the stored one, but must
-    /// be inside.
+    /// Reduces a depth buffer of one sample a tile. The fragment that left a sample need not have exactly the stored
+    /// depth, but its depth must lie within the tile's bounds.
     void fragments(DepthFormat format, Random& random) {
         std::vector<Rational> fragment;
         std::vector<float> depth;

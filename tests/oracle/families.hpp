@@ -187,7 +187,7 @@ inline Scene denormals(Random& random, std::size_t count) {
     });
 }
 
-/// The same scenes, all lengths times 2^-60 to 2^60.
+/// Ordinary scenes with all lengths multiplied by 2^-60 to 2^60.
 inline Scene scales(Random& random, std::size_t count) {
     const auto lens = [](double aspect, Random& r) {
         const double k = std::exp2(r.integer(-60, 60));

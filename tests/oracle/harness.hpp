@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the library's lists to questions for the oracle: what lists have that no method without rounding errors would.
+// Asks the oracle about the library's lists: how many entries they have that exact arithmetic would not list.
 #pragma once
 
 #include "library_view.hpp"
@@ -85,7 +85,7 @@ std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, s
     return in;
 }
 
-/// The same of masks; with z-bins in[bin and tile][light], tiles in each bin.
+/// Reads the lists of tiles from masks; with z-bins in[bin and tile][light], tiles in each bin.
 inline std::vector<std::vector<bool>> membership(const lightbin::LightMasks& masks, std::size_t lights) {
     std::vector<std::vector<bool>> in;
     const lightbin::BinRange every_light[] = {{0, 0xffffffff}};
@@ -143,7 +143,7 @@ public:
         mutable std::optional<Depths> depths_;
     };
 
-    /// Beyond doubt the ball does not meet the block of tiles within the cell's depths.
+    /// Returns true only if the light's sphere surely does not meet a block of tiles between the depths of a cell.
     bool apart(const Block& b, const Cell& cell, const FlatBall& ball) {
         return truth.filter.apart(b.x0, b.x1, b.y0, b.y1, cell.flat, ball);
     }
@@ -257,8 +257,8 @@ private:
         return made;
     }
 
-    /// Double precision cannot tell on which side of the circle (c, depth) the eye is, so any slope may be
-    /// reached.
+    /// Returns whether double precision cannot tell if the eye is in the disc of a light, so that any slope may be in
+    /// its image.
     bool eye_on_surface(const Rational& c, const CameraBall& ball) const {
         const Rational squares = square(c) + square(ball.depth), radius = square(ball.radius);
         return !oracle.orthographic() && abs(squares - radius) * (1 << 29) < squares + radius;

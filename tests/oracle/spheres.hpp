@@ -234,7 +234,7 @@ inline Light huge(const Aim& aim, Random& random) {
     return aim.light(v[0] / length * at, v[1] / length * at, v[2] / length * at, r);
 }
 
-/// The same shapes from 2^-40 to 2^40.
+/// A light like those of field(), scaled by 2^-40 to 2^40.
 inline Light scales(const Aim& aim, Random& random) {
     const double k = random.power_of_two(-40, 40);
     const Light light = field(aim, random);
@@ -255,7 +255,7 @@ inline Light tile_edge(const Aim& aim, Random& random) {
     return random.chance(0.3) ? light : nudged(light, random);
 }
 
-/// The same with few bits in every number, so that on edges of rational length the touch can be exact.
+/// A light whose numbers have few bits, so that it can be exactly tangent to the plane of a tile edge.
 inline Light tile_edge_exact(const Aim& aim, Random& random) {
     const double r = aim.unit * 5 * random.integer(1, 12) * 0.125,
                  d = aim.near_plane + r + aim.unit * random.integer(0, 40);
@@ -351,7 +351,7 @@ inline const std::vector<SphereSet>& sphere_sets() {
     return sets;
 }
 
-/// Lights of a SphereSet, or of another set of theirs.
+/// Makes the lights of a set, such as a SphereSet.
 template <class Set>
 auto make(const Set& set, const Camera& camera, std::size_t count, std::uint64_t seed) {
     const Aim aim(camera);

@@ -20,7 +20,7 @@ inline constexpr Setting settings[] = {{"rounding upward", Rounding::upward},
                                        {"trapping", Rounding::to_nearest, true},
                                        {"flushing denormal numbers", Rounding::to_nearest, false, true}};
 
-/// Has the thread compute in one of them for its life.
+/// While an object of this class lives, the thread computes in a floating-point environment of the list above.
 class Environment {
 public:
     explicit Environment(const Setting& setting) : had_(std::fegetenv(&before_) == 0) {

@@ -80,7 +80,7 @@ public:
         data_[name].assign(bytes.begin(), bytes.end());
     }
 
-    /// A struct of constants: as one block, and as vectors.
+    /// Binds a struct of constants by two names: as one uniform block, and as the vectors `names` that it consists of.
     void put_constants(std::span<const std::byte> bytes, std::span<const char* const> names) {
         data_["grid_block"].assign(bytes.begin(), bytes.end());
         for (std::size_t i = 0; i < names.size(); ++i)

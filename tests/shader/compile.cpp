@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Hands every text of the library but WGSL to glslang; what is for Vulkan or HLSL becomes
-// SPIR-V, which the validator of SPIRV-Tools then reads. And which prefixes names may have is held against the compilers and
-// the languages' reserved words.
+// SPIR-V, which the validator of SPIRV-Tools then reads. And which prefixes names may have is held against the
+// compilers and the languages' reserved words.
 //   compile WORDS LANGUAGE: its number; WORDS: a file of keywords and reserved words of GLSL 4.60,
 //   GLSL ES 3.20, Vulkan's GLSL, HLSL and WGSL, but for those that end with a digit, as no name of the texts does
 #include "vulkan/compile.hpp"
@@ -117,8 +117,8 @@ void compile_language(Compiler& compiler, ShaderLanguage language, std::set<std:
     });
 }
 
-/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts, whose prefixes
-/// are as `prefixes` has them.
+/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts, whose
+/// prefixes are as `prefixes` has them.
 std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
                                 const std::set<std::string>& names, const std::vector<std::string>& words) {
     lightbin::SnippetOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
@@ -126,7 +126,7 @@ std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
     options.prefix = longest;
     if (language != ShaderLanguage::wgsl)
         compiler.compile(language, EShLangFragment, reader_text_job(options, Stage::fragment).text);
-    // What is refused would not compile, here in OpenGL ES.
+    // A text that shader_snippet() refuses would not compile, here in OpenGL ES.
     options = with_switches(every_list(ShaderLanguage::essl_300, lightbin::Slicing::clusters)[0], 8);
     options.prefix = "zzq_";
     const std::string text = reader_text_job(options, Stage::fragment).text;

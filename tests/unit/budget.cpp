@@ -17,7 +17,8 @@ bool goes_before(const std::vector<float>& weights, std::uint32_t a, std::uint32
     return a < b;
 }
 
-/// The lists that stay, made of all entries sorted; `order` is that of z-bins' ranks, or empty.
+/// Returns the lists that a budget should leave, by sorting all entries. With z-bins, where lists have ranks in place
+/// of ids, order[rank] is the id; else `order` is empty.
 test::Lists expected(const test::Lists& lists, const std::vector<std::uint32_t>& order,
                      const std::vector<float>& weights, const BudgetLimits& limits) {
     struct Entry {

@@ -37,7 +37,8 @@ TEST_CASE("a depth is in the slice between its boundaries") {
 
 namespace {
 
-/// log2 in a shader at its worst, by the precision that Vulkan asks for: 2^-21 from 0.5 to 2, else 3 units in the last place.
+/// log2 in a shader at its worst, by the precision that Vulkan asks for: 2^-21 from 0.5 to 2, else 3 units in the last
+/// place.
 float rough_log2(float x, float sign) {
     const double exact = std::log2(static_cast<double>(x));
     const float nearest = static_cast<float>(exact);
@@ -65,7 +66,8 @@ struct OwnFormula {
     }
 };
 
-/// Of spheres that end at depths around each boundary, how many the slice lacks that such a shader looks up at that depth.
+/// Of spheres that end at depths around each boundary, how many the slice lacks that such a shader looks up at that
+/// depth.
 template <Options options> int missed(const Slices& slices, const OwnFormula& formula) {
     std::vector<Sphere> lights;
     std::vector<float> depths;
@@ -136,7 +138,8 @@ TEST_CASE("a margin takes a light to no slice that is further off") {
             if (!grid->lights_in(0, 0, slice).empty()) met.push_back(slice);
         return met;
     };
-    // A depth of 8 may be meant where 8 - 2 to 8 + 2 is looked up, and what is looked up as 8 be 8 / 1.25 to 8 / 0.75.
+    // With a margin of 1/4, depth 8 may be looked up as 6 to 10, and a depth looked up as 8 may be 8 / 1.25 to 8 /
+    // 0.75.
     CHECK(slices_of(3, 2) == std::vector<int>{2});
     CHECK(slices_of(4, 2.5f) == std::vector<int>{2, 3});
     CHECK(slices_of(14, 1) == std::vector<int>{3});

@@ -59,7 +59,7 @@ TEST_CASE("a plain function runs a Parallel's work") {
 
 namespace {
 
-/// Every value from the first to the last has words of its own.
+/// Checks that to_string() has another text for each value of an enum from the first to the last.
 template <class Enum> void check_words(Enum first, Enum last) {
     std::set<std::string> words;
     int count = 0;

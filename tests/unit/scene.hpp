@@ -149,7 +149,8 @@ inline lightbin::ZBounds some_bounds(const lightbin::View& view, std::vector<flo
     return {.min = min, .max = max};
 }
 
-/// Returns the lists of ids of a grid, with z-bins those of the ranks, sorted. Its bounds are some_bounds().
+/// Bins lights with some_bounds() and returns the list of ids of each tile. With z-bins the ranks in the lists are
+/// turned into ids, and these are sorted.
 template <lightbin::Options options, class LightRange>
 Lists id_lists(const lightbin::View& view, const LightRange& lights, const lightbin::Parallel& threads = {},
                lightbin::LightCounts* counts = nullptr, lightbin::Isa isa = lightbin::compiled_isa) {
@@ -179,8 +180,8 @@ template <class Visit> void on_rungs(Visit visit) {
     visit.template operator()<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
 }
 
-/// Checks that each rung lists less than three quarters of the entries of the spheres that lights are parts of, no light
-/// that rectangles leave out, and each light where it is listed alone.
+/// Checks that each rung lists less than three quarters of the entries of the spheres that lights are parts of, no
+/// light that rectangles leave out, and each light where it is listed alone.
 template <class Light>
 void check_rungs(const std::vector<Light>& lights, const std::vector<lightbin::Sphere>& spheres) {
     const lightbin::View view = test::view({1283, 721}, 16);

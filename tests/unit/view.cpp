@@ -109,7 +109,7 @@ TEST_CASE("matrices that are no projection of the promised kinds are refused by 
         all_are(ErrorCode::image_offset_out_of_range, {with(2, 0, much, good), with(2, 1, much, good),
                                                        with(3, 0, much, box), with(3, 1, much, box)});
     all_are(ErrorCode::depth_range_not_finite, {with(2, 2, 0.0f, box), with(2, 2, 1e-39f, box)});
-    // The last has all depths of -1 to 1 behind the eye.
+    // With the last matrix, all points with a depth of -1 to 1 lie behind the eye.
     all_are(ErrorCode::no_near_plane, {with(3, 2, 0.0f, good), with(2, 2, 5, good)});
     CHECK(refusal(with(3, 2, -1e-39f, good)) == ErrorCode::near_plane_too_close);
     glm::dmat4 closer(good);

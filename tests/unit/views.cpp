@@ -12,7 +12,7 @@ using namespace lightbin;
 
 namespace {
 
-/// What an eye that is `aside` to the right sees of the lights.
+/// Returns the lights in the view space of an eye that is `aside` farther to the right.
 std::vector<glm::vec4> seen_from(float aside, std::vector<glm::vec4> lights) {
     for (glm::vec4& light : lights)
         light.x -= aside;

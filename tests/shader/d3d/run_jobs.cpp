@@ -13,7 +13,7 @@ int main(int count, char** arguments) {
     run_readers(device, reader_runs(language), share, tally);
     run_readers(device, multiview_runs(language), share, tally);
     run_reductions(device, language, false, share, tally);
-    // Of the grids every fifth: each takes many runs, and so these as long as all the rest.
+    // Grids made on the GPU take many runs each, so that only every fifth of these cases is run.
     const bool culls = CullTests(language, {5 * share.first, 5 * share.count}).run(device);
     std::printf("%s\n", tally.text().c_str());
     return !tally.good() || !culls;
