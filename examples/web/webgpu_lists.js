@@ -24,7 +24,7 @@ export class CulledLists {
     // What a plan of lighting.gpu_frame() needs.
     upload({constants, bytes}, {slabs, edges, tiles_x, tiles_y}) {
         this.constants.write(constants);
-        for (const [name, size] of Object.entries(bytes)) this[name].reserve(size);
+        for (const name of ['scratch', 'tiles', 'lists']) this[name].reserve(bytes[name]);
         // First the depths of the slices, or the Z bounds, which another pass writes; then the sides of the tiles.
         const edges_at = slabs ? slabs.byteLength : 8 * tiles_x * tiles_y;
         this.z_bounds.reserve(edges_at + edges.byteLength);
