@@ -15,7 +15,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// AdviceCosts that advise() can't measure, as they depend on the renderer and the GPU. Times are in nanoseconds, 0 or more.
+/// Costs that advise() can't measure, as they depend on the renderer and the GPU. Times are in nanoseconds, 0 or more.
 struct AdviceCosts {
     /// The time to evaluate one light at one pixel: about 1 on a CPU core, and 0.005 to 0.05 on a whole, parallel GPU.
     double evaluation_ns = 0.02;
@@ -43,7 +43,8 @@ struct AdvicePlan {
     double build_ns = 0;        ///< the time to build the lists, plus AdviceCosts::z_bounds_ns if the plan has Z bounds
     double upload_ns = 0;       ///< the time to move the lists to where the shader reads them
     std::uint64_t entries = 0;  ///< the length of the light index list, or of LightMasks::words()
-    /// The list lengths summed over all pixels with something to light; without Z bounds multiplied by AdviceCosts::overdraw.
+    /// The list lengths summed over all pixels with something to light; without Z bounds multiplied by
+    /// AdviceCosts::overdraw.
     double evaluations = 0;
     double words = 0;  ///< the words of masks that all these pixels look at; multiplied like `evaluations`
     /// The time of a frame:
@@ -68,7 +69,7 @@ inline std::string to_string(const AdvicePlan& plan) {
 struct AdviceVerdict {
     std::string part;     ///< the technique's name, such as "clusters"
     bool keep = false;    ///< whether the judged plan uses the technique that `part` names
-    AdvicePlan other = {};      ///< the cheapest measured plan that lacks the technique if `keep` is true, else that uses it
+    AdvicePlan other = {};  ///< the cheapest measured plan without the technique if `keep` is true, else with it
     std::string instead;  ///< `other` in words; empty if no measured plan differs from the judged one in `part`
     double saved_ns = 0;  ///< the time of a frame with the AdvicePlan `other` minus that with the judged plan
 };

@@ -818,7 +818,7 @@ typedef struct lightbin_grid_constants {
     int32_t corner_x, corner_y, unused[2];
 } lightbin_grid_constants;
 LIGHTBIN_API lightbin_result lightbin_get_grid_constants(const lightbin_view* view, int32_t corner_x, int32_t corner_y,
-                                              lightbin_grid_constants* constants);
+                                                         lightbin_grid_constants* constants);
 
 /* The constants `image` and `depths` that the text's function `check_view` reads.
  *
@@ -827,7 +827,7 @@ typedef struct lightbin_view_constants {
     float scale_x, scale_y, offset_x, offset_y, forward, perspective, nearest, tolerance;
 } lightbin_view_constants;
 LIGHTBIN_API lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tolerance,
-                                              lightbin_view_constants* constants);
+                                                         lightbin_view_constants* constants);
 
 /* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors:
  * LIGHTBIN_BUFFER_TOO_SMALL. */

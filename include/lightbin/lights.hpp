@@ -100,7 +100,8 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
                   "lightbin: these lights are gone after the expression: give the array a name that lives on");
     const auto array = detail::checked_array(lights);
     const auto checked = detail::checked_to_light<typename decltype(array)::value_type>(to_light);
-    return detail::Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{array, checked, {}};
+    using Lights = detail::Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>;
+    return Lights{array, checked, {}};
 }
 
 /// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and enlarged by a

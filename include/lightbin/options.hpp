@@ -30,6 +30,8 @@ struct Options {
     Slicing slicing = Slicing::none;
 };
 
+namespace detail {
+
 /// Calls body(name, member...) for each of the options, with the member of that name of each of the structs. So whoever
 /// copies options to a struct of another language, as lightbin.h does, needs no list of them.
 template <class Body, class... Structs> constexpr void for_each_option(const Body& body, Structs&... structs) {
@@ -37,5 +39,7 @@ template <class Body, class... Structs> constexpr void for_each_option(const Bod
     body("options.depth_test", structs.depth_test...);
     body("options.slicing", structs.slicing...);
 }
+
+}  // namespace detail
 
 }}  // namespace lightbin

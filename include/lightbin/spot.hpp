@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots (bounding_sphere()),
-// tubes and rectangles.
+// What a program that bins Spots (sphere.hpp) includes: their kernels, and spheres around spots, tubes and rectangles.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>

@@ -291,7 +291,7 @@ lightbin_lights lights_of(std::size_t first_spot, std::size_t first_box, bool in
 template <Options options> void compare_sides() {
     using Read = typename Binner<options>::Inputs;
     auto asked = sized<lightbin_binner_options>();
-    for_each_option([](const char*, auto option, std::int32_t& given) { given = static_cast<std::int32_t>(option); },
+    detail::for_each_option([](const char*, auto option, std::int32_t& given) { given = static_cast<std::int32_t>(option); },
                     options, asked);
     asked.isa = LIGHTBIN_WIDEST;
     const auto binner = make_binner(&asked);

@@ -184,7 +184,7 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
     lightbin_result result = check_pointers({{binner, "binner"}});
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
-        lightbin::for_each_option(
+        lightbin::detail::for_each_option(
             [&](const char* name, const auto& from, auto& to) {
                 result = first_error(result, read_member(from, to, name));
             },

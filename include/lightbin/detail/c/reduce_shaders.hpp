@@ -24,7 +24,7 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, l
 }
 
 lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
-                                       lightbin_reduce_constants* constants) {
+                                              lightbin_reduce_constants* constants) {
     return lightbin::c::write_constants<lightbin::reduce_constants>(view, constants, corner_x, corner_y);
 }
 

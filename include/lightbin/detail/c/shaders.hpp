@@ -95,12 +95,12 @@ lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size
 }
 
 lightbin_result lightbin_get_grid_constants(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
-                                     lightbin_grid_constants* constants) {
+                                            lightbin_grid_constants* constants) {
     return lightbin::c::write_constants<lightbin::grid_constants>(view, constants, corner_x, corner_y);
 }
 
 lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tolerance,
-                                     lightbin_view_constants* constants) {
+                                            lightbin_view_constants* constants) {
     return lightbin::c::write_constants<lightbin::view_constants>(view, constants, tolerance);
 }
 

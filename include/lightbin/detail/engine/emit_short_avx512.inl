@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // emit_short() of emit.inl for AVX-512, whose compress instruction finds the lights of all eight tiles at once: builds
-// with clusters and a depth test take 1.1 to 1.35 times as long without it. Only this tier includes it, before emit.inl.
+// with clusters and a depth test take 1.1 to 1.35 times as long without it. Only this tier includes it.
 #define LIGHTBIN_TIER_EMITS_SHORT
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {

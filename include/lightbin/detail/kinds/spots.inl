@@ -80,7 +80,8 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
 }
 
 /// Projects in double a spot that float can't project, as project_in_double() does a sphere. The spot's tile rectangle
-/// is the intersection of two rectangles: of `ball`, the sphere that its cone cuts, and of `least`, its bounding_sphere().
+/// is the intersection of two rectangles: of `ball`, the sphere that its cone cuts, and of `least`, the
+/// bounding_sphere() of the spot.
 inline bool project_spot_in_double(const Camera& camera, const Sphere& ball, const Sphere& least, std::uint32_t i,
                                    ChunkRects& rects, ProjectCounts& counts) {
     ChunkRects second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tier of 256-bit vectors, which hold eight lights: AVX2, which most desktop machines and consoles have.
+// The vector class of AVX2, which most desktop machines and consoles have: vectors of 256 bits hold eight lights.
 #pragma once
 
 #include <lightbin/detail/base/bits.hpp>
