@@ -81,8 +81,9 @@ public:
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
     /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell.
-    /// Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
-    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
+    /// Errors: more lights than Id can number, or than 2^30; more than 2^32 - 1 cells, pairs of a light and a slice, or
+    /// tiles in all lights' rectangles; a world_space() matrix that is not affine; Z bounds shorter than
+    /// view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = detail::Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {

@@ -97,7 +97,7 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
 /// lights, threads  as for Binner::bin()
 /// isa              use no wider instructions than these. The result does not depend on it.
 ///
-/// Errors: more than 2^32 - 1 lights; a world_space() matrix that is not affine.
+/// Errors: more than 2^30 lights; a world_space() matrix that is not affine.
 template <class LightRange, std::convertible_to<Parallel> Threads = detail::Serial>
 Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& lights, const Threads& threads = {},
                                             Isa isa = compiled_isa) {

@@ -108,12 +108,11 @@ inline constexpr const char* error_sentences[] = {
      "matrix alone, not projection times view"),
     ("the world-to-view matrix is transposed, its last column is 0 0 0 1: give the layout that its numbers have in "
      "memory, row major or column major"),
-    ("{needed} lights are too many for the id type, which counts to {available}: choose a wider type by the option "
+    ("{needed} lights are too many, {available} is the limit for ids of this width: choose a wider type by the option "
      "ids, or use fewer lights"),
-    ("the light index list, or masks, would need {needed} entries, and 32-bit offsets reach {available}: use larger "
-     "tiles, fewer slices, or Z bounds"),
-    ("the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: use "
-     "fewer slices, larger tiles or fewer lights"),
+    ("the light index list, or masks, may need {needed} entries, and 32-bit offsets reach {available}: use larger "
+     "tiles, fewer slices or fewer lights"),
+    "the lights meet slices {needed} times, and binning counts to {available}: use fewer slices or fewer lights",
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
     "the buffer for light ids holds {available} ids and {needed} are needed",
     ("grids that share buffers must have the same numbers of columns and rows of tiles and of slices: give their "

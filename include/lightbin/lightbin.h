@@ -533,9 +533,9 @@ typedef struct lightbin_grid {
  *
  * inputs  null: none
  *
- * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number; LIGHTBIN_TOO_MANY_ENTRIES, LIGHTBIN_TOO_MANY_CELLS
- * and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
- * tiles; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
+ * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number, or than 2^30; LIGHTBIN_TOO_MANY_ENTRIES,
+ * LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 tiles in all lights' rectangles, cells, or
+ * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
  * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs;
  * LIGHTBIN_CALLBACK_THREW, of lightbin_threads::run. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,

@@ -80,7 +80,7 @@ public:
     ///
     /// lights  as for Binner::bin()
     ///
-    /// Errors: more than 2^32 - 1 lights or words; a world_space() matrix that is not affine.
+    /// Errors: more than 2^30 lights, or 2^32 - 1 words; a world_space() matrix that is not affine.
     template <class LightRange> Result<LightMasks> bin(const View& view, const LightRange& lights) {
         const auto& source = detail::as_lights(lights);
         if (const auto error = detail::refuse(source)) return *error;

@@ -33,7 +33,7 @@ if [ "$(uname -m)" = x86_64 ]; then
         compile -O0 -march=x86-64-v2 -DALL_OPTIONS -DLIGHTBIN_NO_$define -o "$work/no_$define.o"
         nm -C "$work/no_$define.o" >"$work/no_$define"
     done
-    for kernel in project_lights count_entries bin_blocks find_depth_buckets; do
+    for kernel in project_lights bin_blocks find_depth_buckets; do
         grep -q "::scalar::$kernel\>" "$work/no_SIMD" || { echo "there is no scalar $kernel" >&2; exit 1; }
         if grep "::scalar::$kernel\>" "$work/no_SCALAR"; then
             echo "a scalar $kernel is there with LIGHTBIN_NO_SCALAR" >&2

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <new>
 #include <string>
-#include <tuple>
 #include <vector>
 
 using namespace lightbin;
@@ -54,17 +53,13 @@ TEST_CASE("a buffer refuses what no machine holds, and is as any other after it"
     check(detail::Buffer<std::uint64_t>());
 }
 
-TEST_CASE("more entries than 32-bit offsets reach, and more lights in supertiles than kernels count to") {
-    for (const auto& [side, count, code] : {std::tuple(4096, 256u, ErrorCode::too_many_entries),  // of 2^24 tiles
-                                            {16384, 1024u, ErrorCode::too_many_pairs}}) {  // of 2^22 supertiles
-        const std::vector<glm::vec4> lights(count, glm::vec4(0, 0, 0, HUGE_VALF));
-        Binner<> binner;
-        const auto grid = binner.bin(test::view({side, side}, 1), lights);
-        REQUIRE(!grid);
-        CHECK(grid.error().code == code);
-        CHECK(grid.error().needed >= std::uint64_t{1} << 32);
-        if (code == ErrorCode::too_many_entries) CHECK(names(grid.error(), std::uint64_t{1} << 32));
-    }
+TEST_CASE("more entries than 32-bit offsets reach") {
+    const std::vector<glm::vec4> lights(256, glm::vec4(0, 0, 0, HUGE_VALF));
+    Binner<> binner;
+    const auto grid = binner.bin(test::view({4096, 4096}, 1), lights);
+    REQUIRE(!grid);
+    CHECK(grid.error().code == ErrorCode::too_many_entries);
+    CHECK(names(grid.error(), std::uint64_t{1} << 32));
 }
 
 TEST_CASE("Z bounds shorter than the grid are an error that names the size") {

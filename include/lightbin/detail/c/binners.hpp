@@ -39,14 +39,14 @@ struct AnyHow {
         return left_out(options) == nullptr;
     }
 
-    template <class Id, detail::LightKind kind> detail::ListKernels<Id> kernels() const {
+    template <class Id, detail::LightKind kind> detail::ChooseKernel<Id> choose_kernel() const {
         if constexpr (may(&Options::depth_test))
             if (is.depth_test) {
                 if constexpr (may(&Options::slicing, Slicing::clusters))
-                    if (is.slicing == Slicing::clusters) return detail::list_kernels<Id, true, true, kind>();
-                return detail::list_kernels<Id, true, false, kind>();
+                    if (is.slicing == Slicing::clusters) return detail::choose_kernel<Id, true, true, kind>();
+                return detail::choose_kernel<Id, true, false, kind>();
             }
-        return detail::list_kernels<Id, false, false, kind>();
+        return detail::choose_kernel<Id, false, false, kind>();
     }
 
     template <class Source, class Body> auto with_kind(const Source& lights, const Body& body) const {

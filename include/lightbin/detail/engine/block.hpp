@@ -67,20 +67,6 @@ struct Scratch {
     std::uint8_t* met_boxes() const { return reinterpret_cast<std::uint8_t*>(tile_masks.data()); }
 };
 
-/// Returns an upper bound on the number of elements, which kernels count in 32 bits, of the lists of all blocks (8x8
-/// tiles) of a slice: one for each light and each block that its rectangle can meet, at whichever tile row the first
-/// row of blocks begins, and 64 per block, because lists are padded to whole vectors.
-inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& slice) {
-    const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
-                        height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
-    std::uint64_t size = 64 * width * height;
-    for (const FootprintRun& run : slice.runs)
-        for (std::uint32_t i = run.begin; i < run.end; ++i)
-            size += (slice.lights.x1[i] / 8u - slice.lights.x0[i] / 8u + std::uint64_t{1}) *
-                    ((slice.lights.y1[i] - slice.lights.y0[i] + 7u) / 8 + 1);
-    return size;
-}
-
 /// Writes the ranges of `count` tiles without lights, all at `offset` of the index list. The first 16 are written one
 /// by one, and the rest are copies of all that were written so far, as memcpy() is faster than a loop.
 inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset) {

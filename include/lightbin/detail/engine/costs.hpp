@@ -40,8 +40,4 @@ inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, st
 /// The most entries in all lists of bands (8 tile rows) that one pass over the lights makes; bounds their memory.
 inline constexpr std::uint64_t max_band_entries = std::uint64_t{1} << 24;
 
-/// Lights whose rectangles have at most this many tiles in all need lists whose sizes 32 bits can count, however they
-/// are distributed, so list_size_bound() need not be asked.
-inline constexpr std::uint64_t surely_listed_area = 0xffffffff / 8;
-
 }}}  // namespace lightbin::detail

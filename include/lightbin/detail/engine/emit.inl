@@ -171,21 +171,4 @@ std::uint64_t bin_blocks(const BinJob& job, Scratch& scratch, const BinShare<Id>
     return bin_blocks_by(job, scratch, share, slab, list_lights<tested, kind>);
 }
 
-/// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-template <Tested tested, LightKind kind>
-std::uint64_t count_entries(const BinJob& job, Scratch& scratch) {
-    const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
-    SlabBoxes slab;
-    if constexpr (tested == Tested::slab) slab = arrange_slab(job, scratch);
-    BandLists bands;
-    std::uint64_t entries = 0;
-    for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<tested, kind>(job, scratch, slab, bands, top, end);
-        for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
-            for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
-                entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));
-    }
-    return entries;
-}
-
 }}}}  // namespace lightbin::detail

@@ -10,15 +10,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// The most lights of a call. Where their rectangles have less than 2^32 tiles in all, 32 bits then count the lists of
+/// the blocks of 8x8 tiles in one band: a light meets up to two blocks more than an eighth of its width.
+inline constexpr std::uint64_t max_lights = std::uint64_t{1} << 30;
+
 /// Returns why lights can't be binned, or nothing if they can.
-template <class Source> std::optional<Error> refuse(const Source& source, std::uint64_t max_lights = 0xffffffff) {
+template <class Source> std::optional<Error> refuse(const Source& source, std::uint64_t most = max_lights) {
     std::optional<Error> error;
     for_each_array(source, [&](const auto& lights) {
         if (error || !lights.to_view) return;
         if (const auto code = lights.to_view->refusal()) error = Error{*code};
     });
     const std::uint64_t count = light_count(source);
-    if (!error && count > max_lights) return Error{ErrorCode::too_many_lights, count, max_lights};
+    if (!error && count > most) return Error{ErrorCode::too_many_lights, count, most};
     return error;
 }
 

@@ -20,22 +20,17 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
     return with_tier(isa, [](auto tier) { return tier.template bin_kernel<Id, tested, kind>(); });
 }
 
-/// The binning kernels for a set of options and a kind of lights.
-template <class Id> struct ListKernels {
-    /// Returns the kernel for one slice: the fastest for lights whose rectangles have `area` tiles in all.
-    BinKernel<Id> (*choose)(Isa isa, const View& view, std::uint64_t area);
-    /// Returns how many entries the lists of one slice have. Null without a depth test.
-    std::uint64_t (*count)(const BinJob& slice, Scratch& scratch);
-};
+/// Returns the binning kernel for one slice: the fastest for lights whose rectangles have `area` tiles in all.
+template <class Id> using ChooseKernel = BinKernel<Id> (*)(Isa isa, const View& view, std::uint64_t area);
 
-/// Returns the kernels for lights of the kind `kind`. With clusters and a depth test, spheres and spots are tested
-/// against boxes of equal depths, see SlabCells: a build takes 1.2 to 2 times as long with boxes that differ in depth.
-template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr ListKernels<Id> list_kernels() {
-    constexpr Tested tested = clusters && kind != LightKind::box ? Tested::slab : Tested::cells;
+/// Returns what chooses kernels for lights of the kind `kind`. With clusters and a depth test, spheres and spots are
+/// tested against boxes of equal depths, see SlabCells: a build takes 1.2 to 2 times as long with boxes that differ in
+/// depth.
+template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr ChooseKernel<Id> choose_kernel() {
     if constexpr (depth_test)
-        return {bin_kernel<Id, tested, kind>, least::count_entries<tested, kind>};
+        return bin_kernel<Id, clusters && kind != LightKind::box ? Tested::slab : Tested::cells, kind>;
     else
-        return {bin_kernel<Id, Tested::nothing, LightKind::sphere>, nullptr};
+        return bin_kernel<Id, Tested::nothing, LightKind::sphere>;
 }
 
 /// A light grid, or with clusters one per depth slice, stored one after another. Its memory is kept from call to call.
@@ -44,7 +39,7 @@ template <class Id, bool depth_test, bool clusters, LightKind kind> constexpr Li
 template <class Id, class How> class TileLists {
 public:
     /// Builds the grid. Tiles are in row-major order, slice after slice. Returns an error, and has no grid, if Z bounds
-    /// have too few elements, or 32 bits can't count the entries.
+    /// have too few elements, or 32 bits can't count the tiles of all rectangles, each of which may be an entry.
     ///
     /// all       the footprints, if there are no clusters; with a depth test, ones that keep the lights in view space
     /// sliced    with clusters SlicedFootprints, else not read
@@ -52,7 +47,7 @@ public:
     template <class Sliced, class Threads>
     LIGHTBIN_ONCE std::optional<Error> build(const How& how, Isa isa, const View& view, const FootprintSlice& all,
                                              [[maybe_unused]] const Sliced& sliced, const ZBounds& bounds,
-                                             const ListKernels<Id>& kernels, Buffer<Scratch>& scratch,
+                                             ChooseKernel<Id> choose, Buffer<Scratch>& scratch,
                                              [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // there is no grid until the end of this function
         BinJob common = {};
@@ -72,30 +67,19 @@ public:
         const std::size_t tiles = view.tile_count();
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t area = 0;
-        for (std::size_t slice = 0; slice < slices; ++slice) {
-            const BinJob job = job_of(slice);
-            area += job.area;
-            if (const auto error = check_list_size(view, job)) return error;
-        }
-        std::uint64_t capacity = area;
-        // Tests leave fewer entries than rectangles have tiles: if 32 bits can't count the tiles, count the entries.
-        if constexpr (How::may(&Options::depth_test))
-            if (how.is.depth_test && area > max_entries) {
-                capacity = 0;
-                for (std::size_t slice = 0; slice < slices; ++slice)
-                    capacity += kernels.count(job_of(slice), scratch.data()[0]);
-            }
-        if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
+        for (std::size_t slice = 0; slice < slices; ++slice)
+            area += job_of(slice).area;
+        if (area > max_entries) return Error{ErrorCode::too_many_entries, area, max_entries};
 
         common.tiles = tiles_.reserve(std::uint64_t{tiles} * slices);
-        Id* const list = indices_.reserve(capacity + widest_vector);
+        Id* const list = indices_.reserve(area + widest_vector);
         tile_count_ = tiles * slices;
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, Scratch& memory) {
             std::uint32_t offset = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
                 BinJob job = job_of(slice);
                 job.tiles += slice * tiles;
-                const auto kernel = kernels.choose(isa, view, job.area);
+                const auto kernel = choose(isa, view, job.area);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
             return std::uint64_t{offset};
@@ -103,11 +87,11 @@ public:
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t steps = clusters ? slices : rows,
                               count = min_of<std::size_t>(parallel.workers(), steps);
-            if (count > 1 && area <= max_entries) {
+            if (count > 1) {
                 scratch.reserve(count, count);
                 const std::span<Share> shares(shares_.reserve(count), count);
                 const BinJob job = job_of(0);
-                const auto kernel = kernels.choose(isa, view, job.area);
+                const auto kernel = choose(isa, view, job.area);
                 if (clusters)
                     share_steps(shares, slices, tiles, [&](std::size_t slice) { return job_of(slice).area; });
                 else
@@ -162,13 +146,6 @@ private:
             common.edges[2 * i] = low;
             common.edges[2 * i + 1] = high;
         }
-    }
-
-    static std::optional<Error> check_list_size(const View& view, const FootprintSlice& slice) {
-        if (slice.area > surely_listed_area)
-            if (const std::uint64_t size = list_size_bound(camera_of(view), slice); size > max_entries)
-                return Error{ErrorCode::too_many_pairs, size, max_entries};
-        return {};
     }
 
     Buffer<ListRange> tiles_;

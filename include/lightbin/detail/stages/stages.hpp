@@ -20,8 +20,8 @@ template <Options options> struct FixedHow {
     template <class Value> static constexpr bool may(Value Options::*option, Value value = Value(true)) {
         return is.*option == value;
     }
-    template <class Id, LightKind kind> static constexpr ListKernels<Id> kernels() {
-        return list_kernels<Id, is.depth_test, is.slicing == Slicing::clusters, kind>();
+    template <class Id, LightKind kind> static constexpr ChooseKernel<Id> choose_kernel() {
+        return detail::choose_kernel<Id, is.depth_test, is.slicing == Slicing::clusters, kind>();
     }
     /// Calls body.operator()<kind>() with the kind of a call's lights.
     template <class Source, class Body> static auto with_kind(const Source&, const Body& body) {
@@ -49,8 +49,8 @@ public:
         const DefaultFloatEnvironment environment;
         const Isa isa = machine_isa(cap);
         if (const auto error = project(how, isa, view, source, slices, threads)) return *error;
-        const ListKernels<Id> kernels =
-            how.with_kind(source, [&]<LightKind kind>() { return how.template kernels<Id, kind>(); });
+        const ChooseKernel<Id> choose =
+            how.with_kind(source, [&]<LightKind kind>() { return how.template choose_kernel<Id, kind>(); });
         Lists<Id>& lists = lists_of<Id>();
         FootprintSlice all = footprints_.all();
         LightRanks ranks;
@@ -59,7 +59,7 @@ public:
                 all = ranked_.all();
                 ranks = ranked_.ranks();
             }
-        if (const auto error = lists.build(how, isa, view, all, sliced_, bounds, kernels, scratch_, threads))
+        if (const auto error = lists.build(how, isa, view, all, sliced_, bounds, choose, scratch_, threads))
             return *error;
         const bool clusters = how.is.slicing == Slicing::clusters;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), footprints_.counts(),
@@ -71,7 +71,7 @@ private:
     template <class Source>
     LIGHTBIN_ONCE std::optional<Error> project(const How& how, Isa isa, const View& view, const Source& source,
                                                [[maybe_unused]] const Slices* slices, const Parallel& threads) {
-        if (const auto error = refuse(source, how.is.ids == IdWidth::u16 ? 0x10000 : 0xffffffff)) return error;
+        if (const auto error = refuse(source, how.is.ids == IdWidth::u16 ? 0x10000 : max_lights)) return error;
         scratch_.reserve(1, 1);
         const bool sliced = how.is.slicing != Slicing::none;
         footprints_.project(isa, view, source, threads,
