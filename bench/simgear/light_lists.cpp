@@ -4,7 +4,6 @@
 #define LIGHTBIN_NO_U16
 #define LIGHTBIN_NO_Z_BINS
 #define LIGHTBIN_NO_COVERAGE
-#define LIGHTBIN_NO_BUDGETS
 #define LIGHTBIN_NO_SHADERS
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>

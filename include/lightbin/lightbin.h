@@ -85,10 +85,9 @@ typedef enum lightbin_error {
     LIGHTBIN_NO_BOUNDS_GIVEN = 8,  /* the binner's options read Z bounds */
     LIGHTBIN_NOT_READ = 9,         /* slices, Z bounds or a matrix were given that the options do not read */
     LIGHTBIN_BUFFER_TOO_SMALL = 10,
-    LIGHTBIN_CALLBACK_THREW = 11, /* a C++ callback of the program threw an exception */
     /* A grid is not at the beginning of the memory that another is copied behind it in */
-    LIGHTBIN_OTHER_MEMORY = 12,
-    LIGHTBIN_NO_SUCH_ISA = 13, /* an instruction set that this machine, or the library as it is compiled, lacks */
+    LIGHTBIN_OTHER_MEMORY = 11,
+    LIGHTBIN_NO_SUCH_ISA = 12, /* an instruction set that this machine, or the library as it is compiled, lacks */
 
     LIGHTBIN_MATRIX_NOT_FINITE = 100,
     LIGHTBIN_NOT_A_PROJECTION = 101,
@@ -177,23 +176,6 @@ typedef enum lightbin_isa {
 
 /* Returns the widest instruction set that the library is compiled for and this machine runs. */
 LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
-
-/* ---- Threads of the caller ---- */
-
-/* The library's function that does one of several tasks. The caller's threads call it. */
-typedef void (*lightbin_task)(void* context, size_t index);
-
-/* The caller's threads. lightbin starts none of its own. Work is shared however little there is: give threads where
- * that pays, from about 100,000 lights on (docs/threads.md). */
-typedef struct lightbin_threads {
-    uint32_t size;
-    /* The number of threads that `run` uses; a wrong number costs speed, never the result */
-    uint32_t workers;
-    /* Must call task(context, i) once for each i from 0 to count - 1, in any order and on any threads, and return when
-     * all these calls have returned. */
-    void (*run)(void* user, size_t count, lightbin_task task, void* context);
-    void* user;
-} lightbin_threads;
 
 /* ---- Matrices and views ---- */
 
@@ -494,7 +476,6 @@ typedef struct lightbin_inputs {
     uint32_t unused;
     const lightbin_slices* slices;
     const lightbin_z_bounds* bounds;
-    const lightbin_threads* threads; /* null: the calling thread alone */
 } lightbin_inputs;
 
 /* The list of one tile: `count` ids from index `offset` on. 8 bytes, laid out as a GPU's uvec2. */
@@ -536,8 +517,7 @@ typedef struct lightbin_grid {
  * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number, or than 2^30; LIGHTBIN_TOO_MANY_ENTRIES,
  * LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 tiles in all lights' rectangles, cells, or
  * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
- * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs;
- * LIGHTBIN_CALLBACK_THREW, of lightbin_threads::run. */
+ * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
@@ -567,7 +547,7 @@ typedef struct lightbin_masks {
  * columns, rows, z-bins and lights in view, but not on how many tiles each light covers. docs/tiles.md says when to use
  * them.
  *
- * binner, inputs  as for lightbin_bin(); the binner has no depth test and no clusters, and threads are not used
+ * binner, inputs  as for lightbin_bin(); the binner has no depth test and no clusters
  *
  * Errors: those of lightbin_bin(); LIGHTBIN_NO_SUCH_SLICING_SHADER, of such a binner. */
 LIGHTBIN_API lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view* view,
@@ -585,13 +565,11 @@ typedef struct lightbin_light_coverage {
 /* Writes what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
  * are projected for it, as lightbin_bin() projects them for the lists.
  *
- * threads   null: none
  * coverage  memory for `capacity` elements: there are never more than lights. *count is how many lights are in view
  *
- * Errors: LIGHTBIN_BUFFER_TOO_SMALL; those of lightbin_bin() that are about the lights and the threads. */
+ * Errors: LIGHTBIN_BUFFER_TOO_SMALL; those of lightbin_bin() that are about the lights. */
 LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* lights,
-                                               const lightbin_threads* threads, lightbin_light_coverage* coverage,
-                                               size_t capacity, size_t* count);
+                                               lightbin_light_coverage* coverage, size_t capacity, size_t* count);
 
 /* ---- Finished grids ----
  *
@@ -616,39 +594,6 @@ LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const 
 LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before,
                                                 lightbin_range* ranges, uint64_t range_capacity, void* ids,
                                                 uint64_t id_capacity);
-
-/* Shortens the lists of grids, in memory that it keeps from call to call. */
-typedef struct lightbin_budget lightbin_budget;
-
-/* Makes a lightbin_budget, to be freed with lightbin_budget_destroy(). */
-LIGHTBIN_API lightbin_result lightbin_budget_create(lightbin_budget** budget);
-LIGHTBIN_API void lightbin_budget_destroy(lightbin_budget* budget);
-
-/* What lightbin_limit_grid() left out. An entry is one light in one cell's list. */
-typedef struct lightbin_cut {
-    uint32_t size;
-    uint32_t entries_cut;
-    const uint32_t* cut_in_cell; /* the number of entries left out of each cell, in the order of the ranges */
-    uint64_t cell_count;
-} lightbin_cut;
-
-/* Shortens the lists of a grid to limits. First, each cell keeps its per_cell heaviest lights; then, of the entries
- * that are left, the per_frame heaviest stay, of one light those in the cells that come first. Of lights that weigh the
- * same, those with the lower id stay. *limited is valid until the next call with this budget, and no longer than
- * `grid`: if nothing is left out, it refers to the memory of `grid`.
- *
- * grid       not one that this budget made
- * weights    one for each light, by its id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too. NaN weighs least
- * per_cell   the most lights in the list of a cell; LIGHTBIN_NO_LIMIT: any number
- * per_frame  the most entries in all lists together; LIGHTBIN_NO_LIMIT: any number
- * limited    may be `grid`, which then is overwritten
- * cut        what was left out; null: is not wanted. Its array is valid as long as *limited
- *
- * Errors: LIGHTBIN_TOO_FEW_WEIGHTS, fewer than lights. */
-#define LIGHTBIN_NO_LIMIT 0xffffffffu
-LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid,
-                                                 const float* weights, size_t weight_count, uint32_t per_cell,
-                                                 uint32_t per_frame, lightbin_grid* limited, lightbin_cut* cut);
 
 /* Writes to `entries` in how many cells each light is listed, by its id as lightbin_lights numbers it, with
  * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors:

@@ -154,12 +154,6 @@ static lightbin_grid empty_grid(void) {
     return grid;
 }
 
-static void run_backwards(void* user, size_t count, lightbin_task task, void* context) {
-    ++*(int*)user;
-    while (count > 0)
-        task(context, --count);
-}
-
 /* ---- Tests ---- */
 
 static void test_views(void) {
@@ -272,16 +266,13 @@ static void test_binners(void) {
     lightbin_grid grid = empty_grid();
     lightbin_inputs inputs;
     lightbin_z_bounds bounds = bounds_given();
-    lightbin_threads threads;
     lightbin_binner *binner = NULL, *boxes = NULL;
     lightbin_view* view = NULL;
     lightbin_slices* slices = NULL;
     uint32_t* ids;
     lightbin_range ranges[tile_count];
     float not_affine[16];
-    int calls = 0;
     CLEAR(inputs);
-    CLEAR(threads);
     memset(not_affine, 0, sizeof not_affine);
 
     NEEDS(lightbin_binner_create(NULL, NULL), "binner");
@@ -338,13 +329,7 @@ static void test_binners(void) {
     bounds.tiles = 7;
     CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
     bounds = bounds_given();
-    inputs.threads = &threads;
-    NEEDS(lightbin_bin(boxes, view, &lights, &inputs, &grid), "inputs.threads.run");
-    threads.run = run_backwards;
-    threads.user = &calls;
-    threads.workers = 4;
     CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_OK);
-    CHECK(calls > 0);
 
     /* The caller's memory, copies and encodings. */
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
@@ -457,7 +442,7 @@ static void test_shapes(void) {
     NEEDS(lightbin_tube_box(NULL, b, 1, &box), "a");
 }
 
-/* What is made of finished grids: coverage, counts, kinds, budgets, unions, several views. */
+/* What is made of finished grids: coverage, counts, several views. */
 static void test_grids(void) {
     lightbin_view_options view_given = view_options();
     lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
@@ -465,29 +450,20 @@ static void test_grids(void) {
     lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
     lightbin_binner *binner = NULL, *sixteen = NULL;
     lightbin_view* view = NULL;
-    lightbin_budget* budget = NULL;
-    lightbin_cut cut;
     static lightbin_light_coverage coverage[light_count];
-    lightbin_threads threads;
     static uint32_t entries[light_count];
-    static float weights[light_count];
     static lightbin_range ranges[2 * tile_count];
     uint32_t *ids, listed = 0;
-    size_t count = 0, i;
-    CLEAR(cut);
-    for (i = 0; i < light_count; ++i)
-        weights[i] = (float)(i % 7);
+    size_t count = 0;
     CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(&options, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
-    NEEDS(lightbin_coverage(NULL, &lights, NULL, coverage, light_count, &count), "view");
-    NEEDS(lightbin_coverage(view, NULL, NULL, coverage, light_count, &count), "lights");
-    NEEDS(lightbin_coverage(view, &lights, NULL, coverage, light_count, NULL), "count");
-    CLEAR(threads);
-    NEEDS(lightbin_coverage(view, &lights, &threads, coverage, light_count, &count), "threads.run");
-    CHECK(refuses(lightbin_coverage(view, &lights, NULL, NULL, 0, &count), LIGHTBIN_BUFFER_TOO_SMALL, "coverage"));
+    NEEDS(lightbin_coverage(NULL, &lights, coverage, light_count, &count), "view");
+    NEEDS(lightbin_coverage(view, NULL, coverage, light_count, &count), "lights");
+    NEEDS(lightbin_coverage(view, &lights, coverage, light_count, NULL), "count");
+    CHECK(refuses(lightbin_coverage(view, &lights, NULL, 0, &count), LIGHTBIN_BUFFER_TOO_SMALL, "coverage"));
     CHECK(count == grid.lights - grid.rejected - grid.culled && count > 0);
-    CHECK(lightbin_coverage(view, &lights, NULL, coverage, count, &count).error == LIGHTBIN_OK);
+    CHECK(lightbin_coverage(view, &lights, coverage, count, &count).error == LIGHTBIN_OK);
 
     NEEDS(lightbin_count_entries(NULL, entries, light_count, &listed), "grid");
     NEEDS(lightbin_count_entries(&grid, NULL, light_count, &listed), "entries");
@@ -495,22 +471,6 @@ static void test_grids(void) {
     CHECK(lightbin_count_entries(&grid, entries, light_count - 1, &listed).error ==
           LIGHTBIN_LIGHT_BUFFER_TOO_SMALL);
     CHECK(entries[0] == 0 && listed == 0);
-
-    NEEDS(lightbin_budget_create(NULL), "budget");
-    CHECK(lightbin_budget_create(&budget).error == LIGHTBIN_OK);
-    other = empty_grid();
-    NEEDS(lightbin_limit_grid(NULL, &grid, weights, light_count, 2, 9, &other, &cut), "budget");
-    NEEDS(lightbin_limit_grid(budget, NULL, weights, light_count, 2, 9, &other, &cut), "grid");
-    NEEDS(lightbin_limit_grid(budget, &grid, NULL, light_count, 2, 9, &other, &cut), "weights");
-    NEEDS(lightbin_limit_grid(budget, &grid, weights, light_count, 2, 9, NULL, &cut), "limited");
-    CHECK(lightbin_limit_grid(budget, &grid, weights, light_count - 1, 2, 9, &other, &cut).error ==
-          LIGHTBIN_TOO_FEW_WEIGHTS);
-    CHECK(other.ranges == NULL && cut.cell_count == 0);
-    CHECK(lightbin_limit_grid(budget, &grid, weights, light_count, LIGHTBIN_NO_LIMIT, LIGHTBIN_NO_LIMIT,
-                              &other, NULL)
-              .error == LIGHTBIN_OK);
-    CHECK(other.ids == grid.ids &&
-          other.id_count == grid.id_count); /* nothing is left out, nothing is copied */
 
     ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
     other = grid;
@@ -539,8 +499,6 @@ static void test_grids(void) {
                       LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
     }
     free(ids);
-    lightbin_budget_destroy(budget);
-    lightbin_budget_destroy(NULL);
     lightbin_binner_destroy(sixteen);
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
@@ -681,7 +639,7 @@ static lightbin_result use_everything(uint64_t* sum) {
     lightbin_slices* slices = NULL;
     lightbin_shader* shader = NULL;
     lightbin_result result;
-    int test, slicing, calls = 0;
+    int test, slicing;
     *sum = 0;
     add_boxes(&lights);
     CLEAR(snippet);
@@ -695,15 +653,9 @@ static lightbin_result use_everything(uint64_t* sum) {
             lightbin_binner_options options = options_given(test, slicing);
             lightbin_binner* binner = NULL;
             lightbin_inputs inputs;
-            lightbin_threads threads;
-            lightbin_grid grid = empty_grid();
+                    lightbin_grid grid = empty_grid();
             uint64_t i;
             CLEAR(inputs);
-            CLEAR(threads);
-            threads.workers = 3;
-            threads.run = run_backwards;
-            threads.user = &calls;
-            inputs.threads = &threads;
             if (slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
             if (test != 0 && slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;
             if (result.error == LIGHTBIN_OK) result = lightbin_binner_create(&options, &binner);

@@ -28,19 +28,12 @@ static lightbin_result create(int ids, int depth_test, int slicing) {
     return lightbin_binner_create(&options, &binner);
 }
 
-static void never(void* user, size_t count, lightbin_task task, void* context) {
-    (void)user, (void)count, (void)task, (void)context;
-    abort();
-}
-
 int main(void) {
     static const float projection[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2f, 0};
     static const float lights[8] = {0, 0, -5, 1, 0, 0, -1, 0.5f};
     static const float half_axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const lightbin_view_options view_options = {
         .size = sizeof view_options, .width = 100, .height = 100, .projection = {.floats = projection}};
-    const lightbin_threads threads = {.size = sizeof threads, .run = never};
-    const lightbin_inputs inputs = {.size = sizeof inputs, .threads = &threads};
     lightbin_lights given = {.size = sizeof given,
                              .spheres = {.count = 1, .centre = {.first = lights}, .radius = {.first = lights + 3}}};
     lightbin_grid grid = {.size = sizeof grid};
@@ -56,7 +49,6 @@ int main(void) {
     refuses(create(0, 1, 0), "LIGHTBIN_NO_DEPTH_TEST");
     refuses(create(0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
     refuses(create(0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
-    refuses(lightbin_bin(binner, view, &given, &inputs, &grid), "LIGHTBIN_NO_THREADS");
     given.spots.count = 1;
     given.spots.centre.first = lights;
     given.spots.radius.first = lights + 3;

@@ -5,7 +5,6 @@
 #include <lightbin/lightbin.h>
 
 #include <lightbin/box.hpp>
-#include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
@@ -22,7 +21,6 @@
 #include <cstring>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace {
@@ -87,20 +85,10 @@ struct Scene {
 };
 const Scene scene;
 
-void run_tasks(void* calls, std::size_t n, lightbin_task task, void* context) {
-    ++*static_cast<int*>(calls);
-    std::vector<std::thread> threads;
-    for (std::size_t i = 0; i < n; ++i)
-        threads.emplace_back([=] { task(context, i); });
-    for (std::thread& thread : threads)
-        thread.join();
-}
-
 struct Deleter {
     void operator()(lightbin_view* view) const { lightbin_view_destroy(view); }
     void operator()(lightbin_slices* slices) const { lightbin_slices_destroy(slices); }
     void operator()(lightbin_binner* binner) const { lightbin_binner_destroy(binner); }
-    void operator()(lightbin_budget* budget) const { lightbin_budget_destroy(budget); }
     void operator()(lightbin_shader* shader) const { lightbin_shader_destroy(shader); }
 };
 template <class Handle> using Owned = std::unique_ptr<Handle, Deleter>;
@@ -191,30 +179,16 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     CHECK(listed == *count_entries(expected, std::span<std::uint32_t>(cpp_entries)));
     CHECK(entries == cpp_entries);
 
-    std::vector<float> weights;
-    for (std::size_t i = 0; i < lights; ++i)
-        weights.push_back(static_cast<float>(i % 7));
-    Budget<Id> cpp_budget;
-    const auto budget = owned<lightbin_budget>(lightbin_budget_create);
-    constexpr std::uint32_t per_cell = 12, per_frame = 900;
-    const BudgetedGrid<Id> cpp_limited = *cpp_budget.limit(expected, weights, {per_cell, per_frame});
-    auto limited = sized<lightbin_grid>();
-    auto cut = sized<lightbin_cut>();
-    works(lightbin_limit_grid(budget.get(), &grid, weights.data(), weights.size(), per_cell, per_frame, &limited, &cut));
-    compare(cpp_limited.grid, limited);
-    CHECK(cut.entries_cut == cpp_limited.entries_cut);
-    CHECK(equal(cpp_limited.cut_in_cell, cut.cut_in_cell, cut.cell_count));
-
     std::vector<ListRange> cpp_ranges(2 * cells);
     std::vector<lightbin_range> ranges(2 * cells);
     std::vector<Id> ids(2 * expected.ids().size()), cpp_ids(2 * expected.ids().size());
-    lightbin_grid first = grid, both = limited;
+    lightbin_grid first = grid, both = grid;
     works(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(), ids.size()));
     works(lightbin_copy_grid(&both, &first, ranges.data(), ranges.size(), ids.data(), ids.size()));
     CHECK((cells == 0 || (first.ranges == ranges.data() && first.ids == ids.data())));
     const auto cpp_first = *expected.copy_to(cpp_ranges, cpp_ids);
     compare(cpp_first, first);
-    compare(*cpp_limited.grid.copy_to(cpp_ranges, cpp_ids, cpp_first), both);
+    compare(*expected.copy_to(cpp_ranges, cpp_ids, cpp_first), both);
 
     const ListFormat cpp_format = {ListEncoding::sentinel, IdWidth::u16, 5};
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U16, 5};
@@ -299,8 +273,6 @@ template <Options options> void compare_sides() {
     const auto slices = make_slices();
     auto bounds = sized<lightbin_z_bounds>();
     bounds.min = scene.min.data(), bounds.max = scene.max.data(), bounds.tiles = tiles;
-    int calls = 0;
-    lightbin_threads threads = {sizeof threads, 3, run_tasks, &calls};
     auto inputs = sized<lightbin_inputs>();
     if (Read::reads_slices) inputs.slices = slices.get();
     if (Read::reads_bounds) inputs.bounds = &bounds;
@@ -309,7 +281,6 @@ template <Options options> void compare_sides() {
     for (const bool in_world : {false, true})
         for (const auto& [first_spot, first_box] : firsts) {
             CAPTURE(first_spot);
-            inputs.threads = in_world ? &threads : nullptr;
             const lightbin_lights lights = lights_of(first_spot, first_box, in_world, !in_world);
             const auto part = [&](const auto& all, std::size_t begin, std::size_t end) {
                 const auto array = std::span(all).subspan(begin, end - begin);
@@ -340,11 +311,10 @@ template <Options options> void compare_sides() {
             if constexpr (options.ids == IdWidth::u16) {
                 std::vector<lightbin_light_coverage> covered(count);
                 std::size_t covered_count = 0;
-                works(lightbin_coverage(view.get(), &lights, inputs.threads, covered.data(), count, &covered_count));
+                works(lightbin_coverage(view.get(), &lights, covered.data(), count, &covered_count));
                 CHECK(equal(*coverage(cpp_view, cpp_lights), covered.data(), covered_count));
             }
         }
-    CHECK(calls > 0);
 }
 
 }  // namespace

@@ -27,18 +27,13 @@ void require(bool condition, const char* what) {
 bool memory_is_limited = false;
 long left = 0, blocks = 0;
 
-void run_tasks(void*, std::size_t count, lightbin_task task, void* context) {
-    while (count > 0)
-        task(context, --count);
-}
-
 /// Whether a call succeeded. If not, its sentence is sound.
 bool judged(const lightbin_result& result) {
     memory_is_limited = false;
     char text[600] = "";
     const std::size_t length = lightbin_error_text(result, text, sizeof text);
     require(length > 5 && length < 512 && std::strlen(text) == length, "no sentence");
-    require(result.name != nullptr && result.error != LIGHTBIN_CALLBACK_THREW, "no name, or an exception");
+    require(result.name != nullptr, "no name");
     return result.error == LIGHTBIN_OK;
 }
 
@@ -76,31 +71,19 @@ void check_grid(const lightbin_grid& grid) {
 }
 
 /// Makes of a finished grid what can be made of it.
-void use_grid(const lightbin_grid& grid, lightbin_budget* budget, Bytes& bytes) {
+void use_grid(const lightbin_grid& grid, Bytes& bytes) {
     std::vector<std::uint32_t> entries(bytes.flag() ? grid.lights : bytes.byte());
     std::uint32_t listed = 0;
     if (succeeded(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed)))
         require(listed <= grid.lights - grid.rejected - grid.culled, "lights in lists that are not in view");
-    std::vector<float> weights(bytes.flag() ? grid.lights : bytes.byte());
-    for (float& weight : weights)
-        weight = static_cast<float>(bytes.byte());
-    lightbin_grid limited = {};
-    limited.size = sizeof limited;
-    lightbin_cut cut = {};
-    cut.size = sizeof cut;
-    if (succeeded(lightbin_limit_grid(budget, &grid, weights.data(), weights.size(), bytes.byte(),
-                                      bytes.take<std::uint16_t>(), &limited, &cut))) {
-        check_grid(limited);
-        require(limited.id_count + cut.entries_cut == grid.id_count, "entries that are neither kept nor cut");
-        std::vector<lightbin_range> ranges(grid.range_count + limited.range_count);
-        std::vector<char> ids((grid.id_count + limited.id_count) * grid.id_bytes);
-        lightbin_grid first = grid;
-        if (succeeded(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(),
-                                         ids.size() / grid.id_bytes)) &&
-            succeeded(lightbin_copy_grid(&limited, &first, ranges.data(), ranges.size(), ids.data(),
-                                           ids.size() / grid.id_bytes)))
-            check_grid(limited);
-    }
+    std::vector<lightbin_range> ranges(2 * grid.range_count);
+    std::vector<char> ids(2 * grid.id_count * grid.id_bytes);
+    lightbin_grid first = grid, both = grid;
+    if (succeeded(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(),
+                                     ids.size() / grid.id_bytes)) &&
+        succeeded(lightbin_copy_grid(&both, &first, ranges.data(), ranges.size(), ids.data(),
+                                     ids.size() / grid.id_bytes)))
+        check_grid(both);
 }
 
 /// Floats of lights in an array of exactly the size that they take, or as the bytes have it, nothing.
@@ -248,9 +231,6 @@ void use_calls(Bytes bytes) {
     bounds.size = sizeof bounds;
     bounds.min = bytes.flag() ? nullptr : bounds_memory.data(), bounds.max = bounds_memory.data() + tiles;
     bounds.tiles = tiles;
-    lightbin_budget* budget = nullptr;
-    succeeded(lightbin_budget_create(&budget));
-    lightbin_threads threads = {sizeof threads, bytes.byte(), run_tasks, nullptr};
     for (int call = 0; call < 3 && !bytes.empty(); ++call) {
         std::vector<std::unique_ptr<char[]>> memory;
         lightbin_lights lights = {};
@@ -279,7 +259,6 @@ void use_calls(Bytes bytes) {
             options.depth_test != 0 && options.slicing != LIGHTBIN_CLUSTERS;
         if (bytes.byte() > 240 || options.slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
         if (bytes.byte() > 240 || reads_bounds) inputs.bounds = &bounds;
-        if (bytes.flag()) inputs.threads = &threads;
         lightbin_grid grid = {};
         grid.size = sizeof grid;
         if (succeeded(lightbin_bin(binner, view, &lights, bytes.byte() > 250 ? nullptr : &inputs, &grid))) {
@@ -292,10 +271,10 @@ void use_calls(Bytes bytes) {
             encoded.size = sizeof encoded;
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
             succeeded(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
-            use_grid(grid, budget, bytes);
+            use_grid(grid, bytes);
             std::vector<lightbin_light_coverage> covered(grid.lights);
             std::size_t covered_count = 0;
-            if (succeeded(lightbin_coverage(view, &lights, inputs.threads, covered.data(), covered.size(),
+            if (succeeded(lightbin_coverage(view, &lights, covered.data(), covered.size(),
                                             &covered_count)))
                 require(covered_count == grid.lights - grid.rejected - grid.culled,
                         "coverage of other lights");
@@ -306,7 +285,6 @@ void use_calls(Bytes bytes) {
         }
         left += bytes.byte();
     }
-    lightbin_budget_destroy(budget);
     lightbin_binner_destroy(binner);
     lightbin_slices_destroy(slices);
     lightbin_view_destroy(view);

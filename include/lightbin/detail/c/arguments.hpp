@@ -13,9 +13,7 @@
 
 #include <atomic>
 #include <cstring>
-#include <exception>
 #include <new>
-#include <stdexcept>
 
 namespace lightbin {
 namespace c {
@@ -47,7 +45,6 @@ inline constexpr const char* sentences[] = {
     ("the options do not read this input: bounds want a depth test, and slices a slicing; clusters read no bounds, and "
      "lights in view space no matrix"),
     "this memory holds {available} elements, and {needed} are needed",
-    "a callback of the program threw a C++ exception",
     "this grid must be in the memory that the next view's lists are to be copied to, at its beginning",
     "this machine does not run these vectors, or the library was compiled without them",
 };
@@ -178,12 +175,8 @@ template <class Body> lightbin_result call_if(const lightbin_result& checked, co
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
     try {
         return body();
-    } catch (const std::bad_alloc&) {
+    } catch (...) {  // std::bad_alloc, or the std::length_error of std::string and std::vector
         return refused(LIGHTBIN_OUT_OF_MEMORY, "");
-    } catch (const std::length_error&) {  // of std::string and std::vector
-        return refused(LIGHTBIN_OUT_OF_MEMORY, "");
-    } catch (...) {
-        return refused(LIGHTBIN_CALLBACK_THREW, "");
     }
 #else
     return body();

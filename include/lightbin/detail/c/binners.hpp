@@ -91,61 +91,6 @@ template <class Id> lightbin_result write_grid(const LightGrid<Id>& from, lightb
                  to);
 }
 
-#if defined(LIGHTBIN_NO_THREADS)
-using Threads = detail::Serial;
-#else
-using Threads = Parallel;
-#endif
-
-/// Runs tasks on the caller's threads. Exceptions must not pass through the caller's functions: where a task throws,
-/// memory has run out, as the library calls nothing of the program there, and run() throws std::bad_alloc.
-class CallersThreads {
-public:
-    explicit CallersThreads(const lightbin_threads& threads) : threads_(threads) {}
-
-    template <class Body> void operator()(std::size_t count, Body body) const {
-        Context<Body> context = {body};
-        threads_.run(
-            threads_.user, count, [](void* at, std::size_t i) { static_cast<Context<Body>*>(at)->run(i); },
-            &context);
-#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
-        if (context.failed) throw std::bad_alloc();
-#endif
-    }
-
-private:
-    template <class Body> struct Context {
-        void run(std::size_t i) {
-            const auto result = call_if(succeeded(), [&] {
-                body(i);
-                return succeeded();
-            });
-            if (result.error != LIGHTBIN_OK) failed = true;
-        }
-
-        Body body;
-        std::atomic<bool> failed = false;
-    };
-
-    lightbin_threads threads_;
-};
-
-/// Checks the caller's threads, null for none, and calls body(threads) with them if `checked` is no error.
-template <class Body>
-lightbin_result with_threads(lightbin_result checked, const lightbin_threads* given, const char* name,
-                             const char* name_of_run, const Body& body) {
-    if (given == nullptr) return call_if(checked, [&] { return body(Threads()); });
-    lightbin_threads threads = {};
-    checked = first_error(checked, read(given, threads, name));
-    if (checked.error == LIGHTBIN_OK && threads.run == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name_of_run);
-#if defined(LIGHTBIN_NO_THREADS)
-    return first_error(checked, refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS"));
-#else
-    const CallersThreads run(threads);
-    return call_if(checked, [&] { return body(Threads(threads.workers, run)); });
-#endif
-}
-
 /// Returns why an input is refused that must be given if the options read it, and else must not be.
 inline lightbin_result check_input(bool is_read, const void* given, lightbin_error if_missing, const char* name) {
     if (is_read == (given != nullptr)) return succeeded();
@@ -212,11 +157,11 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                          read_call(false, binner, view, given_lights, given_inputs, lights, inputs));
     if (result.error == LIGHTBIN_OK && inputs.bounds != nullptr)
         result = read_bounds(inputs.bounds, view->value, bounds);
-    return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads& threads) {
+    return call_if(result, [&] {
         const auto bin = [&]<class Id>(Id) {
             const auto made = binner->stages.template bin<Id>(
                 binner->how, binner->isa, view->value, lights.all(),
-                inputs.slices != nullptr ? &inputs.slices->value : nullptr, bounds, threads);
+                inputs.slices != nullptr ? &inputs.slices->value : nullptr, bounds, lightbin::detail::Serial());
             return made ? write_grid(*made, grid) : refused(made.error());
         };
 #if !defined(LIGHTBIN_NO_U16)
@@ -234,7 +179,7 @@ lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view*
     lightbin_inputs inputs = {};
     const lightbin_result result = first_error(
         check_size(masks, "masks"), read_call(true, binner, view, given_lights, given_inputs, lights, inputs));
-    return with_threads(result, inputs.threads, "inputs.threads", "inputs.threads.run", [&](const Threads&) {
+    return call_if(result, [&] {
         const auto bin = [&](const auto&... slices) {
             const auto made = binner->masks.bin(view->value, lights.all(), slices...);
             if (!made) return refused(made.error());
@@ -253,14 +198,13 @@ lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view*
 
 #if !defined(LIGHTBIN_NO_COVERAGE)
 lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* given_lights,
-                                  const lightbin_threads* given_threads, lightbin_light_coverage* coverage,
-                                  std::size_t capacity, std::size_t* count) {
+                                  lightbin_light_coverage* coverage, std::size_t capacity, std::size_t* count) {
     using namespace lightbin::c;
     CallLights lights;
     const lightbin_result result =
         first_error(check_pointers({{view, "view"}, {count, "count"}}), read_lights(given_lights, lights));
-    return with_threads(result, given_threads, "threads", "threads.run", [&](const Threads& threads) {
-        const auto made = lightbin::coverage(view->value, lights.all(), threads);
+    return call_if(result, [&] {
+        const auto made = lightbin::coverage(view->value, lights.all());
         if (!made) return refused(made.error());
         return write_items(made->data(), made->size(), coverage, capacity, count, "coverage");
     });

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that work on finished grids: copies, budgets, encodings, statistics.
+// The C side's functions that work on finished grids: copies, encodings, statistics.
 #pragma once
 
 #include <lightbin/detail/c/binners.hpp>
 
-#include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 
@@ -50,25 +49,8 @@ inline lightbin_result read_member(const lightbin_format* given, ListFormat& kno
     return given != nullptr ? read_format(given, known, name) : succeeded();
 }
 
-/// A Budget for each width of ids.
-struct Budgets {
-    Budget<std::uint32_t> wide = {};
-    Budget<std::uint16_t> narrow = {};
-
-    template <class Id> auto& of() {
-        if constexpr (sizeof(Id) == 2)
-            return narrow;
-        else
-            return wide;
-    }
-};
-
 }  // namespace c
 }  // namespace lightbin
-
-struct lightbin_budget {
-    lightbin::c::Budgets value;
-};
 
 extern "C" {
 
@@ -96,36 +78,6 @@ lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* bef
         });
     });
 }
-
-#if !defined(LIGHTBIN_NO_BUDGETS)
-
-lightbin_result lightbin_budget_create(lightbin_budget** budget) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{budget, "budget"}}), [&] { return make_handle(budget); });
-}
-
-void lightbin_budget_destroy(lightbin_budget* budget) {
-    delete budget;
-}
-
-lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid, const float* weights,
-                                    std::size_t weight_count, std::uint32_t per_cell, std::uint32_t per_frame,
-                                    lightbin_grid* limited, lightbin_cut* cut) {
-    using namespace lightbin::c;
-    const lightbin_result checked =
-        first_error(check_pointers({{budget, "budget"}}), check_array(weights, weight_count, "weights"),
-                    check_size(limited, "limited"), cut != nullptr ? check_size(cut, "cut") : succeeded());
-    return call_if(checked, [&] {
-        return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& whole) {
-            const auto made = budget->value.of<Id>().limit(whole, {weights, weight_count}, {per_cell, per_frame});
-            if (!made) return refused(made.error());
-            if (cut != nullptr) write({0, made->entries_cut, made->cut_in_cell.data(), made->cut_in_cell.size()}, cut);
-            return write_grid(made->grid, limited);
-        });
-    });
-}
-
-#endif
 
 lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t* entries, std::size_t capacity,
                                        std::uint32_t* listed) {
