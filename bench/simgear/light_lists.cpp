@@ -3,7 +3,6 @@
 #define LIGHTBIN_NO_BOXES
 #define LIGHTBIN_NO_U16
 #define LIGHTBIN_NO_Z_BINS
-#define LIGHTBIN_NO_COVERAGE
 #define LIGHTBIN_NO_SHADERS
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>

@@ -68,12 +68,12 @@ public:
         const std::span<const ListRange> ranges = grid.ranges();
         const std::size_t cells = ranges.size(), entries = grid.ids().size();
         const std::span<const std::uint32_t> by_rank = grid.ranks().order;
-        id_count_ = by_rank.empty() ? lights : by_rank.size();
+        const std::size_t id_count = by_rank.empty() ? lights : by_rank.size();  // all ids are less
         std::uint32_t* const cut = cut_.reserve(cells);
         std::uint64_t in_cells = 0;
         for (const ListRange range : ranges) {
             // Only a grid that the caller made can fail this: its LightCounts are missing or wrong.
-            LIGHTBIN_ASSERT(range.count == 0 || grid.ids()[range.offset + range.count - 1] < id_count_);
+            LIGHTBIN_ASSERT(range.count == 0 || grid.ids()[range.offset + range.count - 1] < id_count);
             in_cells += detail::min_of(range.count, limits.per_cell);
         }
         if (in_cells == entries && entries <= limits.per_frame) {
@@ -81,32 +81,41 @@ public:
             return BudgetedGrid<Id>{grid, 0, {cut, cells}};
         }
 
-        find_orders(by_rank, weights);
+        std::uint64_t* const orders = orders_.reserve(id_count);
+        for (std::size_t id = 0; id < id_count; ++id) {
+            const std::uint32_t light = by_rank.empty() ? static_cast<std::uint32_t>(id) : by_rank[id];
+            orders[id] = detail::weight_order(weights[light], light);
+        }
         ranges_.reserve(cells);
         ids_.reserve(in_cells + 1);  // keep_if() writes one element past the end
         size_ = 0;
         for (std::size_t cell = 0; cell < cells; ++cell) {
             const std::span<const Id> list = grid.ids().subspan(ranges[cell].offset, ranges[cell].count);
-            const auto item = [=](std::size_t i) { return Listed{list[i], 1}; };
             std::uint64_t end = ~std::uint64_t{0};  // greater than all orders
-            if (list.size() > limits.per_cell) end = first_cut(list.size(), limits.per_cell, item).order;
+            if (list.size() > limits.per_cell) {
+                std::uint64_t* const sorted = sorted_.reserve(list.size());
+                for (std::size_t i = 0; i < list.size(); ++i)
+                    sorted[i] = orders[list[i]];
+                std::nth_element(sorted, sorted + limits.per_cell, sorted + list.size());
+                end = sorted[limits.per_cell];
+            }
             keep_if(cell, list, [=](std::uint64_t order) { return order < end; });
         }
         if (size_ > limits.per_frame) {
-            std::uint32_t* const entries_of = entries_of_.reserve(id_count_);
-            detail::fill_items(entries_of, id_count_, 0);
+            std::uint64_t* const sorted = sorted_.reserve(size_);
             for (std::size_t i = 0; i < size_; ++i)
-                ++entries_of[ids_.data()[i]];
-            Cut cut_light = first_cut(id_count_, limits.per_frame, [=](std::size_t id) {
-                return Listed{static_cast<std::uint32_t>(id), entries_of[id]};
-            });
+                sorted[i] = orders[ids_.data()[i]];
+            std::nth_element(sorted, sorted + limits.per_frame, sorted + size_);
+            // Entries of this order, which are all of one light, stay in as many cells as the limit leaves room for.
+            const std::uint64_t end = sorted[limits.per_frame];
+            std::ptrdiff_t left = std::count(sorted, sorted + limits.per_frame, end);
             size_ = 0;
             for (std::size_t cell = 0; cell < cells; ++cell) {
                 const ListRange range = ranges_.data()[cell];
                 keep_if(cell, {ids_.data() + range.offset, range.count}, [&](std::uint64_t order) {
-                    const bool stays = order == cut_light.order && cut_light.left > 0;
-                    cut_light.left -= stays;
-                    return order < cut_light.order || stays;
+                    const bool stays = order == end && left > 0;
+                    left -= stays;
+                    return order < end || stays;
                 });
             }
         }
@@ -118,60 +127,6 @@ public:
     }
 
 private:
-    /// Stores in orders_ the weight_order() of each id's light, and in classes_ in which of 256 intervals it lies.
-    ///
-    /// by_rank  LightRanks::order if the grid has z-bins, where ids are ranks: the index of each id's light; else empty
-    void find_orders(std::span<const std::uint32_t> by_rank, std::span<const float> weights) {
-        std::uint64_t* const orders = orders_.reserve(id_count_);
-        std::uint64_t least = ~std::uint64_t{0}, greatest = 0;
-        for (std::size_t id = 0; id < id_count_; ++id) {
-            const std::uint32_t light = by_rank.empty() ? static_cast<std::uint32_t>(id) : by_rank[id];
-            orders[id] = detail::weight_order(weights[light], light);
-            least = detail::min_of(least, orders[id]);
-            greatest = detail::max_of(greatest, orders[id]);
-        }
-        const int bits = static_cast<int>(std::bit_width(greatest - least)), shift = bits > 8 ? bits - 8 : 0;
-        std::uint8_t* const classes = classes_.reserve(id_count_);
-        for (std::size_t id = 0; id < id_count_; ++id)
-            classes[id] = static_cast<std::uint8_t>((orders[id] - least) >> shift);
-    }
-
-    /// An id, and in how many lists it is.
-    struct Listed {
-        std::uint32_t id, entries;
-    };
-    /// Where a limit cuts: entries of lights with less weight than one light are left out. That light's weight_order(),
-    /// and how many of its own entries stay.
-    struct Cut {
-        std::uint64_t order;
-        std::uint32_t left;
-    };
-
-    /// Finds the heaviest light that loses entries if the `most` heaviest entries of some lights stay. A histogram of
-    /// the entries tells in which class this light is, so that only the lights of one class are sorted.
-    ///
-    /// count  the number of lights, which have more than `most` entries together
-    /// item   item(i) returns light i as a Listed
-    template <class Item> Cut first_cut(std::size_t count, std::uint32_t most, Item item) {
-        std::uint32_t histogram[256] = {};
-        for (std::size_t i = 0; i < count; ++i)
-            histogram[classes_.data()[item(i).id]] += item(i).entries;
-        unsigned found = 0;
-        for (; histogram[found] <= most; ++found)
-            most -= histogram[found];
-        std::uint32_t *const sorted = sorted_.reserve(count), *end = sorted;
-        for (std::size_t i = 0; i < count; ++i) {
-            *end = static_cast<std::uint32_t>(i);
-            end += classes_.data()[item(i).id] == found;
-        }
-        const auto order = [&](std::uint32_t i) { return orders_.data()[item(i).id]; };
-        std::sort(sorted, end, [&](std::uint32_t a, std::uint32_t b) { return order(a) < order(b); });
-        const std::uint32_t* first = sorted;
-        for (; item(*first).entries <= most; ++first)
-            most -= item(*first).entries;
-        return {order(*first), most};
-    }
-
     /// Appends to ids_ those ids of a cell's `list` for whose weight_order() `stays` returns true, and stores their
     /// range. `list` may be a part of ids_ from element size_ on, as each id is read before it can be overwritten.
     template <class Stays> void keep_if(std::size_t cell, std::span<const Id> list, Stays stays) {
@@ -185,12 +140,11 @@ private:
     }
 
     detail::Buffer<std::uint64_t> orders_;  ///< for each id, the weight_order() of its light
-    detail::Buffer<std::uint8_t> classes_;  ///< per id, which of 256 equal intervals its light's weight_order() is in
-    detail::Buffer<std::uint32_t> sorted_, entries_of_, cut_;
+    detail::Buffer<std::uint64_t> sorted_;  ///< the orders of a list's or all lists' entries, while they are sorted
+    detail::Buffer<std::uint32_t> cut_;
     detail::Buffer<ListRange> ranges_;
     detail::Buffer<Id> ids_;
-    std::size_t size_ = 0;      ///< the number of entries in ids_, which are those of the cells so far
-    std::size_t id_count_ = 0;  ///< all ids are less
+    std::size_t size_ = 0;  ///< the number of entries in ids_, which are those of the cells so far
 };
 
 }}  // namespace lightbin

@@ -74,7 +74,7 @@ inline Isa processor_isa() {
 }  // namespace detail
 #endif
 
-/// Returns the widest instruction set, up to `cap` (such as Options::isa), of this build that this machine runs.
+/// Returns the widest instruction set, up to `cap`, of this build that this machine runs.
 inline Isa machine_isa(Isa cap = compiled_isa) {
     if (cap > compiled_isa) cap = compiled_isa;
 #if defined(LIGHTBIN_X86)

@@ -554,23 +554,6 @@ LIGHTBIN_API lightbin_result lightbin_bin_masks(lightbin_binner* binner, const l
                                                 const lightbin_lights* lights, const lightbin_inputs* inputs,
                                                 lightbin_masks* masks);
 
-/* What a light in view covers. */
-typedef struct lightbin_light_coverage {
-    uint32_t id;             /* the light's id as lightbin_lights numbers it */
-    uint16_t x0, y0, x1, y1; /* tile columns x0 to x1 and tile rows y0 to y1, ends included */
-    float nearest, farthest; /* the least and greatest view depth of the light, rounded outward */
-    float pixels; /* larger side of the rectangle around its projection in the image, rounded up; +inf if unknown */
-} lightbin_light_coverage;
-
-/* Writes what each light in view covers, in ascending order of id: for shadow atlases and levels of detail. The lights
- * are projected for it, as lightbin_bin() projects them for the lists.
- *
- * coverage  memory for `capacity` elements: there are never more than lights. *count is how many lights are in view
- *
- * Errors: LIGHTBIN_BUFFER_TOO_SMALL; those of lightbin_bin() that are about the lights. */
-LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* lights,
-                                               lightbin_light_coverage* coverage, size_t capacity, size_t* count);
-
 /* ---- Finished grids ----
  *
  * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its
@@ -594,17 +577,6 @@ LIGHTBIN_API lightbin_result lightbin_coverage(const lightbin_view* view, const 
 LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before,
                                                 lightbin_range* ranges, uint64_t range_capacity, void* ids,
                                                 uint64_t id_capacity);
-
-/* Writes to `entries` in how many cells each light is listed, by its id as lightbin_lights numbers it, with
- * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors:
- * LIGHTBIN_LIGHT_BUFFER_TOO_SMALL, fewer elements than grid->lights. */
-LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries, size_t capacity,
-                                                    uint32_t* listed);
-
-/* Counts the lengths of a grid's lists. histogram[0] counts the lists without lights, histogram[k] those with 2^(k-1)
- * to 2^k - 1 lights. */
-LIGHTBIN_API lightbin_result lightbin_list_lengths(const lightbin_grid* grid, uint32_t* longest,
-                                                   uint64_t histogram[33]);
 
 /* ---- Encodings ---- */
 

@@ -46,7 +46,7 @@ module() {
 }
 # Modules with vectors are only loaded where there are vectors. Text, which few programs ask for, and not in each frame,
 # has a module of its own.
-left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR COVERAGE)
+left_out=-DLIGHTBIN_NO_SCALAR
 # The second threshold is that of functions that are declared inline, whose default of 325 is made for speed alone.
 small='-mllvm -inline-threshold=0 -mllvm -inlinehint-threshold=40'
 small="$small -fno-vectorize -fno-slp-vectorize -fno-unroll-loops"

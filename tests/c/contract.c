@@ -442,7 +442,7 @@ static void test_shapes(void) {
     NEEDS(lightbin_tube_box(NULL, b, 1, &box), "a");
 }
 
-/* What is made of finished grids: coverage, counts, several views. */
+/* What is made of finished grids: several views in one memory. */
 static void test_grids(void) {
     lightbin_view_options view_given = view_options();
     lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
@@ -450,28 +450,11 @@ static void test_grids(void) {
     lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
     lightbin_binner *binner = NULL, *sixteen = NULL;
     lightbin_view* view = NULL;
-    static lightbin_light_coverage coverage[light_count];
-    static uint32_t entries[light_count];
     static lightbin_range ranges[2 * tile_count];
-    uint32_t *ids, listed = 0;
-    size_t count = 0;
+    uint32_t* ids;
     CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(&options, &binner).error == LIGHTBIN_OK);
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
-    NEEDS(lightbin_coverage(NULL, &lights, coverage, light_count, &count), "view");
-    NEEDS(lightbin_coverage(view, NULL, coverage, light_count, &count), "lights");
-    NEEDS(lightbin_coverage(view, &lights, coverage, light_count, NULL), "count");
-    CHECK(refuses(lightbin_coverage(view, &lights, NULL, 0, &count), LIGHTBIN_BUFFER_TOO_SMALL, "coverage"));
-    CHECK(count == grid.lights - grid.rejected - grid.culled && count > 0);
-    CHECK(lightbin_coverage(view, &lights, coverage, count, &count).error == LIGHTBIN_OK);
-
-    NEEDS(lightbin_count_entries(NULL, entries, light_count, &listed), "grid");
-    NEEDS(lightbin_count_entries(&grid, NULL, light_count, &listed), "entries");
-    NEEDS(lightbin_count_entries(&grid, entries, light_count, NULL), "listed");
-    CHECK(lightbin_count_entries(&grid, entries, light_count - 1, &listed).error ==
-          LIGHTBIN_LIGHT_BUFFER_TOO_SMALL);
-    CHECK(entries[0] == 0 && listed == 0);
-
     ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
     other = grid;
     both = grid;

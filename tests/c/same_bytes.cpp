@@ -172,13 +172,7 @@ void compare(const LightMasks& expected, const lightbin_masks& masks) {
 /// What is made of a finished grid, on both sides.
 template <class Id>
 void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
-    const std::size_t lights = expected.light_counts().lights, cells = expected.ranges().size();
-    std::vector<std::uint32_t> entries(lights, 7), cpp_entries(lights);
-    std::uint32_t listed = 0;
-    works(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed));
-    CHECK(listed == *count_entries(expected, std::span<std::uint32_t>(cpp_entries)));
-    CHECK(entries == cpp_entries);
-
+    const std::size_t cells = expected.ranges().size();
     std::vector<ListRange> cpp_ranges(2 * cells);
     std::vector<lightbin_range> ranges(2 * cells);
     std::vector<Id> ids(2 * expected.ids().size()), cpp_ids(2 * expected.ids().size());
@@ -203,13 +197,6 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     CHECK(encoded.entries_cut == cpp_encoded.entries_cut);
     CHECK(encoded.tiles_cut == cpp_encoded.tiles_cut);
     CHECK(encoded.capacity_needed == cpp_encoded.capacity_needed);
-
-    const ListLengths cpp_lengths = list_lengths(expected);
-    std::uint32_t longest = 0;
-    std::uint64_t histogram[33] = {};
-    works(lightbin_list_lengths(&grid, &longest, histogram));
-    CHECK(longest == cpp_lengths.longest);
-    CHECK(std::memcmp(histogram, cpp_lengths.histogram.data(), sizeof histogram) == 0);
 }
 
 /// Compares a shader's text and bindings, or the sentence of the error.
@@ -307,12 +294,6 @@ template <Options options> void compare_sides() {
                 auto masks = sized<lightbin_masks>();
                 works(lightbin_bin_masks(binner.get(), view.get(), &lights, &inputs, &masks));
                 compare(cpp_masks, masks);
-            }
-            if constexpr (options.ids == IdWidth::u16) {
-                std::vector<lightbin_light_coverage> covered(count);
-                std::size_t covered_count = 0;
-                works(lightbin_coverage(view.get(), &lights, covered.data(), count, &covered_count));
-                CHECK(equal(*coverage(cpp_view, cpp_lights), covered.data(), covered_count));
             }
         }
 }

@@ -71,11 +71,7 @@ void check_grid(const lightbin_grid& grid) {
 }
 
 /// Makes of a finished grid what can be made of it.
-void use_grid(const lightbin_grid& grid, Bytes& bytes) {
-    std::vector<std::uint32_t> entries(bytes.flag() ? grid.lights : bytes.byte());
-    std::uint32_t listed = 0;
-    if (succeeded(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed)))
-        require(listed <= grid.lights - grid.rejected - grid.culled, "lights in lists that are not in view");
+void use_grid(const lightbin_grid& grid) {
     std::vector<lightbin_range> ranges(2 * grid.range_count);
     std::vector<char> ids(2 * grid.id_count * grid.id_bytes);
     lightbin_grid first = grid, both = grid;
@@ -271,13 +267,7 @@ void use_calls(Bytes bytes) {
             encoded.size = sizeof encoded;
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
             succeeded(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
-            use_grid(grid, bytes);
-            std::vector<lightbin_light_coverage> covered(grid.lights);
-            std::size_t covered_count = 0;
-            if (succeeded(lightbin_coverage(view, &lights, covered.data(), covered.size(),
-                                            &covered_count)))
-                require(covered_count == grid.lights - grid.rejected - grid.culled,
-                        "coverage of other lights");
+            use_grid(grid);
             std::vector<lightbin_range> ranges(grid.range_count);
             std::vector<char> ids(grid.id_count * grid.id_bytes);
             if (succeeded(lightbin_copy_grid(&grid, nullptr, ranges.data(), ranges.size(), ids.data(), grid.id_count)))

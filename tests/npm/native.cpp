@@ -3,6 +3,8 @@
 // library makes of it: blocks of bytes, each after its length as 32 bits, in the order in which module.mjs reads them.
 #include <lightbin/lightbin.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -102,11 +104,18 @@ lightbin_lights lights_of(const double* camera) {
 /// What is made of a grid.
 void write_uses(const lightbin_grid& grid) {
     std::vector<std::uint32_t> entries(grid.lights);
-    std::uint32_t listed = 0, longest = 0;
-    std::uint64_t histogram[33], bytes = 0;
-    succeed(lightbin_count_entries(&grid, entries.data(), entries.size(), &listed));
+    for (std::uint64_t i = 0; i < grid.id_count; ++i) {
+        const std::uint32_t id = grid.id_bytes == 2 ? static_cast<const std::uint16_t*>(grid.ids)[i]
+                                                    : static_cast<const std::uint32_t*>(grid.ids)[i];
+        ++entries[grid.order != nullptr ? grid.order[id] : id];
+    }
     write_block(entries.data(), entries.size() * sizeof entries[0]);
-    succeed(lightbin_list_lengths(&grid, &longest, histogram));
+    std::uint32_t longest = 0;
+    std::uint64_t histogram[33] = {}, bytes = 0;
+    for (std::uint64_t i = 0; i < grid.range_count; ++i) {
+        longest = std::max(longest, grid.ranges[i].count);
+        ++histogram[std::bit_width(grid.ranges[i].count)];
+    }
     write_numbers({longest});
     write_block(histogram, sizeof histogram);
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U32, 1};  // no element is left as it was

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <lightbin/binner.hpp>
-#include <lightbin/coverage.hpp>
 #include <lightbin/detail/c/lights.hpp>
 #include <lightbin/detail/c/views.hpp>
 #include <lightbin/masks.hpp>
@@ -195,20 +194,5 @@ lightbin_result lightbin_bin_masks(lightbin_binner* binner, const lightbin_view*
         return bin();
     });
 }
-
-#if !defined(LIGHTBIN_NO_COVERAGE)
-lightbin_result lightbin_coverage(const lightbin_view* view, const lightbin_lights* given_lights,
-                                  lightbin_light_coverage* coverage, std::size_t capacity, std::size_t* count) {
-    using namespace lightbin::c;
-    CallLights lights;
-    const lightbin_result result =
-        first_error(check_pointers({{view, "view"}, {count, "count"}}), read_lights(given_lights, lights));
-    return call_if(result, [&] {
-        const auto made = lightbin::coverage(view->value, lights.all());
-        if (!made) return refused(made.error());
-        return write_items(made->data(), made->size(), coverage, capacity, count, "coverage");
-    });
-}
-#endif
 
 }  // extern "C"

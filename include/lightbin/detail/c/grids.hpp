@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that work on finished grids: copies, encodings, statistics.
+// The C side's functions that work on finished grids: copies and encodings.
 #pragma once
 
 #include <lightbin/detail/c/binners.hpp>
 
-#include <lightbin/coverage.hpp>
 #include <lightbin/encode.hpp>
 
 namespace lightbin {
@@ -75,33 +74,6 @@ lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* bef
             } else {
                 return refused(LIGHTBIN_NOT_A_VALUE, "before.id_bytes", sizeof(OtherId));
             }
-        });
-    });
-}
-
-lightbin_result lightbin_count_entries(const lightbin_grid* grid, std::uint32_t* entries, std::size_t capacity,
-                                       std::uint32_t* listed) {
-    using namespace lightbin::c;
-    const lightbin_result checked =
-        first_error(check_pointers({{listed, "listed"}}), check_array(entries, capacity, "entries"));
-    return call_if(checked, [&] {
-        return with_grid(grid, "grid", [&](const auto& from) {
-            const auto count = count_entries(from, std::span<std::uint32_t>(entries, capacity));
-            if (!count) return refused(count.error());
-            *listed = *count;
-            return succeeded();
-        });
-    });
-}
-
-lightbin_result lightbin_list_lengths(const lightbin_grid* grid, std::uint32_t* longest, std::uint64_t* histogram) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{longest, "longest"}, {histogram, "histogram"}}), [&] {
-        return with_grid(grid, "grid", [&](const auto& from) {
-            const lightbin::ListLengths lengths = list_lengths(from);
-            *longest = lengths.longest;
-            lightbin::detail::copy_items(lengths.histogram.data(), lengths.histogram.size(), histogram);
-            return succeeded();
         });
     });
 }

@@ -52,10 +52,8 @@ public:
         copy_items(boundaries.data(), count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
         // Buckets of equal length in depth or, if fewer boundaries share a bucket then, in the depths' bit patterns.
-        fill_buckets(false);
-        const std::size_t shared_by_depth = shared_;
-        fill_buckets(true);
-        if (shared_ > shared_by_depth) fill_buckets(false);
+        const std::size_t shared_by_depth = fill_buckets(false);
+        if (fill_buckets(true) > shared_by_depth) fill_buckets(false);
     }
 
     std::span<const float> boundaries() const { return {boundaries_.data(), count_}; }
@@ -70,16 +68,10 @@ public:
     /// Calls found(i, first, last) for each footprint i: its light's view depths meet the slices first..last.
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
-    /// conservative  the slices may be one more at either end, where that is faster to find
     /// lights, runs  FootprintArrays and ranges of indices in them; overwrites `widest_lanes` elements of lights.ids
     ///               after each
     template <class Kernel, class Lights, class Runs, class Found>
-    void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
-        // The conservative way to find slices compares no depth with slice boundaries. It takes all slices that meet
-        // the buckets, a lookup table's depth intervals, of a light's nearest and farthest depth: at most one slice too
-        // many at either end if no bucket holds two boundaries. It is not taken where the table is as large as it may
-        // be: there may then be few buckets per boundary, and many lights would get a slice too many.
-        conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
+    void find(Kernel kernel, float z_sign, const Lights& lights, Runs runs, Found found) const {
         for (const auto& run : runs) {
             fill_items(lights.ids + run.end, widest_lanes, lights.ids[run.begin]);  // kernels read whole vectors
             for (std::uint32_t i = run.begin; i < run.end; i += LightDepths::size) {
@@ -92,13 +84,10 @@ public:
                     depths.first_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.nearest[j]));
                     depths.last_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[j]));
                 }
-                const std::uint32_t *first = depths.first_bucket, *last = depths.last_bucket;
-                for (std::uint32_t j = 0; j < count && conservative; ++j)
-                    found(i + j, before_.data()[first[j]], before_.data()[last[j] + 1u]);
-                for (std::uint32_t j = 0; j < count && !conservative; ++j) {
+                for (std::uint32_t j = 0; j < count; ++j) {
                     const float nearest = depths.nearest[j], farthest = depths.farthest[j];
-                    found(i + j, before(first[j], [=](float boundary) { return boundary < nearest; }),
-                          before(last[j], [=](float boundary) { return boundary <= farthest; }));
+                    found(i + j, before(depths.first_bucket[j], [=](float boundary) { return boundary < nearest; }),
+                          before(depths.last_bucket[j], [=](float boundary) { return boundary <= farthest; }));
                 }
             }
         }
@@ -124,8 +113,8 @@ private:
     }
 
     /// Divides the range of depths into buckets, and stores how many slice boundaries lie before each: the prefix sums
-    /// of a histogram.
-    void fill_buckets(bool by_bits) {
+    /// of a histogram. Returns the number of boundaries that share a bucket with a lesser one.
+    std::size_t fill_buckets(bool by_bits) {
         const std::span<const float> all = boundaries();
         buckets_.by_bits = by_bits;
         // Four times as many buckets as boundaries, so that few boundaries share one; but at least 512, whose table
@@ -141,17 +130,17 @@ private:
         fill_items(counts, buckets + 1, 0);
         for (const float boundary : all)
             ++counts[buckets_.index_of(boundary) + 1];
-        shared_ = 0;
+        std::size_t shared = 0;
         for (std::size_t i = 1; i <= buckets; ++i) {
-            shared_ += counts[i] > 1 ? counts[i] - 1 : 0;
+            shared += counts[i] > 1 ? counts[i] - 1 : 0;
             counts[i] += counts[i - 1];
         }
+        return shared;
     }
 
     Buffer<float> boundaries_;      ///< the depths between slices, ascending, then a NaN that ends every search
     std::size_t count_;             ///< the number of boundaries between slices
     Buffer<std::uint32_t> before_;  ///< for each depth bucket the number of slice boundaries before it; last, the total
-    std::size_t shared_ = 0;        ///< the number of boundaries that share a bucket (depth interval) with a lesser one
     DepthBuckets buckets_;
 };
 

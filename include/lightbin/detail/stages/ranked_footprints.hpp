@@ -15,7 +15,7 @@ class RankedFootprints {
 public:
     /// Finds the z-bins, intervals of view depth, that each light meets, and sorts the footprints by the first of them.
     /// A light's view depths, a sphere's being z - r to z + r, include their ends and are widened by the slices'
-    /// margin. A light that ends close to a boundary may also count for the bin on the other side.
+    /// margin.
     ///
     /// kernel  find_depth_buckets() for the lights' kind
     void order(DepthBucketsKernel kernel, const View& view, const Footprints& footprints,
@@ -39,8 +39,7 @@ public:
             last_bins[i] = last;
             ++ends[first];
         };
-        table_of(slices).find(kernel, true, camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
-                              found);
+        table_of(slices).find(kernel, camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
         // and at last the rank after the last of them.

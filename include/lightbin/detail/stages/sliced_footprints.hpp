@@ -75,7 +75,7 @@ private:
             ++runs[first].end;
             --runs[last + 1].end;
         };
-        table_->find(kernel, false, camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
+        table_->find(kernel, camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
         std::uint64_t size = 0;
         std::uint32_t count = 0;
         for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
