@@ -28,15 +28,6 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) 
 /// Binning by scattering (scatter.hpp) counts the lights of this many rows of tiles at a time, to bound its memory.
 inline constexpr unsigned rows_counted_at_once = 512;
 
-/// Returns how many of a grid's `height` rows of tiles are filled with ids in one pass over all lights, when binning by
-/// scattering (scatter.hpp). Long lists of all tiles lie in too many cache lines and memory pages for one pass. Then
-/// passes over rows with about 512 tiles in all are faster, unless rereading the lights takes longer than writing ids.
-inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, std::uint64_t lights,
-                                       std::uint64_t entries) {
-    const std::size_t rows = 512 / width + 1;
-    return entries < 256 * std::uint64_t{height} * width + 2 * lights * (height / rows + 1) ? height : rows;
-}
-
 /// The most entries in all lists of bands (8 tile rows) that one pass over the lights makes; bounds their memory.
 inline constexpr std::uint64_t max_band_entries = std::uint64_t{1} << 24;
 

@@ -75,6 +75,8 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
 
 /// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in
 /// each list. It is not inlined, as it takes a tenth longer inside another loop.
+///
+/// list  the whole grid's index list
 template <class Id>
 LIGHTBIN_NOINLINE void fill_rows(const BinJob& job, Id* list, std::size_t begin, std::size_t end) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
@@ -116,16 +118,12 @@ template <class Id>
 std::uint64_t scatter_lights(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];
     if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one(job, run, share);
-    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     std::uint32_t offset = share.offset;
     for (unsigned begin = share.begin; begin < share.end; begin += rows_counted_at_once)
         offset = count_rows(job, scratch, begin, min_of(begin + rows_counted_at_once, share.end), offset);
     const std::uint64_t entries = offset - share.offset;
     if (entries == 0) return 0;  // also where the rows have no tiles
-    const std::size_t step = rows_filled_at_once(share.end - share.begin, width, job.visible, entries);
-    Id* const list = share.out - share.offset;  // the whole grid's index list
-    for (std::size_t begin = share.begin; begin < share.end; begin += step)
-        fill_rows(job, list, begin, min_of<std::size_t>(begin + step, share.end));
+    fill_rows(job, share.out - share.offset, share.begin, share.end);
     return entries;
 }
 
