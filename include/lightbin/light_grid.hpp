@@ -90,13 +90,7 @@ public:
     /// copies. The buffers are only written, in ascending order, so they may be mapped GPU memory. ranks() is not
     /// copied. Errors: a buffer is smaller than ranges() or ids(); then nothing is written.
     Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids) const {
-        if (ranges.size() < ranges_.size())
-            return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};
-        if (ids.size() < ids_.size()) return Error{ErrorCode::id_buffer_too_small, ids_.size(), ids.size()};
-        detail::copy_items(ranges_.data(), ranges_.size(), ranges.data());
-        detail::copy_items(ids_.data(), ids_.size(), ids.data());
-        return LightGrid(tiles_x_, tiles_y_, {ranges.data(), ranges_.size()}, {ids.data(), ids_.size()},
-                         counts_, slices_, ranks_);
+        return copy_to(ranges, ids, {tiles_x_, tiles_y_, ranges.first(0), ids.first(0), {}, slices_});
     }
 
     /// Copies ranges() and ids() behind those of other views, for shaders made with SnippetOptions::views. Returns the

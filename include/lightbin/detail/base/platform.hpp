@@ -62,13 +62,6 @@
 #define LIGHTBIN_UNROLL
 #endif
 
-// LIGHTBIN_PREFETCH(address) begins to load a line of the cache, at an address that need not be valid.
-#if defined(__GNUC__) || defined(__clang__)
-#define LIGHTBIN_PREFETCH(address) __builtin_prefetch(address)
-#else
-#define LIGHTBIN_PREFETCH(address) static_cast<void>(address)
-#endif
-
 // The file that implements lightbin.h has the code for all options, where others have the code for one or two. There,
 // LIGHTBIN_SMALL marks functions that are compiled for size, as they run seldom; LIGHTBIN_ONCE marks functions that run
 // once in a call of a binner, and LIGHTBIN_SHARED_PART what the kernels of several options have in common: both stand

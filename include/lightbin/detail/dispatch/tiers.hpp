@@ -2,6 +2,8 @@
 // Compiles the kernels once for each tier, that is, for each instruction set, in the tier's namespace.
 #pragma once
 
+#include <lightbin/detail/base/warnings_off.inl>
+
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
 #include <lightbin/detail/project/sphere_around.hpp>
@@ -9,8 +11,6 @@
 #include <lightbin/detail/vectors/avx512.hpp>
 #include <lightbin/detail/vectors/scalar.hpp>
 #include <lightbin/detail/vectors/simd128.hpp>
-
-#include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

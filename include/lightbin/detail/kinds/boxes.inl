@@ -219,12 +219,6 @@ inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
 
 /// Loads the numbers of a vector of Boxes, in the order in which a Box has them in memory.
 LIGHTBIN_INLINE void load_boxes(const Box* from, Floats (&given)[17]) {
-    // Sixteen boxes of 68 bytes lie in 17 cache lines, more than the processor prefetches by itself. Later ones may lie
-    // beyond the array's end, where a pointer must not be formed, but an address may be.
-    if constexpr (lanes == 16)
-        for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
-            LIGHTBIN_PREFETCH(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(from) +
-                                                            2 * lanes * sizeof *from + k));
     static_assert(sizeof(Box) == sizeof(float) * 17);
     LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
         load_vec4s(&from->x + k, sizeof *from, given[k], given[k + 1], given[k + 2], given[k + 3]);

@@ -9,8 +9,6 @@
 
 #include <immintrin.h>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 // The region of the tier, which shape_kernels.hpp enters once more.
 #define LIGHTBIN_AVX2_BEGIN LIGHTBIN_TARGET_BEGIN("avx2,bmi,popcnt")
 #define LIGHTBIN_AVX2_END LIGHTBIN_TARGET_END
@@ -138,5 +136,4 @@ inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint
 
 LIGHTBIN_AVX2_END
 
-#include <lightbin/detail/base/warnings_on.inl>
 #endif

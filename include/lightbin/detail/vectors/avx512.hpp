@@ -10,8 +10,6 @@
 
 #include <immintrin.h>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 // The region of the tier, which is entered once more for its kernels. GCC 12's own AVX-512 header causes two warnings,
 // by values that it leaves undefined on purpose.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -186,5 +184,4 @@ inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint
 
 LIGHTBIN_AVX512_END
 
-#include <lightbin/detail/base/warnings_on.inl>
 #endif

@@ -22,8 +22,6 @@
 #define LIGHTBIN_SIMD128_END
 #endif
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 LIGHTBIN_SIMD128_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace simd128 {
@@ -104,5 +102,4 @@ inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint
 
 LIGHTBIN_SIMD128_END
 
-#include <lightbin/detail/base/warnings_on.inl>
 #endif
