@@ -35,10 +35,7 @@ struct ViewSpot : Spot {
 /// A ViewSpot or ViewBox as the depth tests read it.
 template <class Shape> struct TestedShape {
     TestedShape() = default;
-    TestedShape(const Shape& of) : shape(&of), nearest(of.nearest), farthest(of.farthest) {
-        for (const CellPlane& plane : of.around)  // read later, when more lights of the block are known
-            LIGHTBIN_PREFETCH(&plane);
-    }
+    TestedShape(const Shape& of) : shape(&of), nearest(of.nearest), farthest(of.farthest) {}
 
     const Shape* shape;
     float nearest, farthest;
