@@ -69,8 +69,8 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
               {ErrorCode::no_storage_buffers}},
              {options.storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu),
               {ErrorCode::no_texel_buffers}},
-             {options.storage == ListStorage::byte_address && !dialect.hlsl, {ErrorCode::no_byte_address_buffers}},
-             {options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
+             {options.wave_loop &&
+                  (!masks || !dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
               {ErrorCode::no_wave_operations}},
              {options.views < 1 || options.views > max_views,
               {ErrorCode::views_out_of_range, options.views, max_views}},
@@ -86,8 +86,7 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     const std::uint64_t limit =
         options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
     using enum ShaderResource;
-    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
-                                             byte_address};
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block};
     const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
     const bool table = !masks && format.encoding == ListEncoding::offset_count;
     // In buffer textures and textures each id has a texel unless ids are packed.
@@ -97,12 +96,7 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
                                                                      : TexelFormat::r32ui;
     const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
     const std::uint32_t width = textures ? options.texture_width : 0;
-    // With several views, functions that read a view's lists or constants take the view's number as last parameter.
-    const bool several = options.views > 1;
-    const std::string view_parameter = several ? ", uint view" : "", view_argument = several ? ", view" : "",
-                      is_view = several ? " && view < " + std::to_string(options.views) + "u" : "";
-    const std::string of_list = "(uvec2 pixel, float view_depth" + view_parameter + ") {\n",
-                      list_arguments = "(pixel, view_depth" + view_argument + ")";
+    const bool several = options.views > 1, fixed = options.tile_size != 0;
     std::vector<ShaderBuffer> buffers;
     if (table)
         buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
@@ -125,6 +119,29 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
         if (buffer.resource == uniform_block && buffer.bytes > limit)
             return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
 
+    writer.set({{"masks", masks}, {"table", table}, {"sliced", sliced}, {"binned", binned},
+                {"clusters", sliced && !binned}, {"several", several}, {"fixed", fixed}, {"flip_y", options.flip_y},
+                {"viewport_corner", options.viewport_corner}, {"has_findLSB", dialect.storage_buffers},
+                {"tiles_in_texture", textures && !options.tiles_in_uniform_block},
+                {"length_known", table && !binned}, {"searched", masks && binned},
+                {"ids_of_32", one_id || format.ids == IdWidth::u32},
+                {"ids_of_16", !one_id && format.ids == IdWidth::u16},
+                {"ids_of_8", !one_id && format.ids == IdWidth::u8}});
+    writer.set("size", fixed ? std::to_string(options.tile_size) + "u" : "$grid.x");
+    writer.set("is_size", fixed ? " && $grid.x == @size" : "");
+    writer.set("sentinel", std::to_string(countable_lights(format)) + "u");
+    writer.set("capacity", std::to_string(format.capacity) + "u");
+    writer.set("texel_of_tile", writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))"));
+    writer.set("guess_by_depth", "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u])");
+    // With several views, functions that read a view's lists or constants take the view's number as last parameter.
+    writer.set("view_parameter", several ? ", uint view" : "");
+    writer.set("view_argument", several ? ", view" : "");
+    writer.set("is_view", several ? " && view < " + std::to_string(options.views) + "u" : "");
+    writer.set("last_view", std::to_string(options.views - 1) + "u");
+    writer.set("image", several ? "image" : "$image");
+    writer.set("depths", several ? "depths" : "$depths");
+    writer.set("if_own", options.wave_loop ? " if (cursor.own)" : "");
+
     // The loop ends for all lanes of a wave at once. WGSL compilers can't prove that, and would refuse subgroupMin.
     if (options.wave_loop && dialect.webgpu)
         writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
@@ -140,23 +157,31 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     for (const ShaderBuffer& buffer : buffers)
         writer.declare(buffer);
 
-    // Lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of or
-    // above the viewport wraps around to a large unsigned number, and so stays outside.
-    const std::string here = std::string("    uvec2 here = pixel") +
-                             (options.viewport_corner ? " - uvec2($corner);\n" : ";\n") +
-                             (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
-    // The shader function `tile` divides by at least 1: until the program sets `grid`, the tile size in it is 0.
-    const bool fixed = options.tile_size != 0;
-    const std::string size = fixed ? std::to_string(options.tile_size) + "u" : "$grid.x";
-    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + here + "    return here / " +
-               (fixed ? size : "max(" + size + ", 1u)") + ";\n}\n");
-    // `slice` returns the slice of a view depth. It starts from the estimate, in which a device may round the logarithm
-    // as it likes, and steps from there until the boundaries enclose the depth. They are compared as integers in the
-    // same order as the floats, because devices may flush denormal floats to zero.
+    // Converts a pixel, as the shader counts pixels, to the view's. A pixel left of or above the viewport wraps around
+    // to a large unsigned number, and so stays outside.
+    const std::string here = R"(    uvec2 here = pixel;                      @if !viewport_corner
+    uvec2 here = pixel - uvec2($corner);     @if viewport_corner
+    here.y = $grid.w - 1u - here.y;          @if flip_y
+)";
+    // `tile` divides by at least 1: until the program sets `grid`, the tile size in it is 0.
+    //
+    // `slice` starts from the estimate, in which a device may round the logarithm as it likes, and steps from there
+    // until the boundaries enclose the depth. They are compared as integers in the same order as the floats, because
+    // devices may flush denormal floats to zero.
+    //
+    // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
+    writer.add(R"(
+// The tile that a pixel lies in.
+uvec2 $tile(uvec2 pixel) {
+)" + here + R"(    return here / @size;             @if fixed
+    return here / max(@size, 1u);    @if !fixed
+}
+)");
     if (sliced)
-        writer.add("\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = "
-                   "uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + "
-                   "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u]);" R"(
+        writer.add(R"(
+// The slice that a view depth lies in.
+uint $slice(float view_depth) {
+    float guess = uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + @guess_by_depth;
     uint last = $slices[3u];
     uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
     uint bits = floatBitsToUint(view_depth);
@@ -167,115 +192,125 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     return slice;
 }
 )");
-
-    // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
     if (!masks)
-        writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
-                   (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
-                    : format.ids == IdWidth::u16         ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
-                                                         : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
-                   ";\n}\n");
-
-    // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
-    // nothing: the constants may be unset, or describe a smaller image or other tiles.
-    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
-    if (masks)
-        writer.add("    uint bits;\n    uvec2 masks;\n    uint ids;\n" + std::string(binned ? "    uvec2 bin;\n" : ""));
-    else if (binned)
-        writer.add("    uint last;\n");
-    writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
-               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n    c.id = 0u;\n");
-    if (masks)
-        writer.add("    c.bits = 0u;\n    c.masks = uvec2(0u, 0u);\n    c.ids = 0u;\n" +
-                   std::string(binned ? "    c.bin = uvec2(0u, 0u);\n" : ""));
-    else if (binned)
-        writer.add("    c.last = 0u;\n");
-    writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
-               is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
-    if (sliced) writer.add("        uint slice = $slice(view_depth);\n");
-    // The cells of a view, and its bins, lie behind those of the views before it.
-    if (sliced && several) writer.add("        slice += view * ($slices[3u] + 1u);\n");
-    const bool clusters = sliced && !binned;
-    if (clusters || several)
-        writer.add(std::string("        tile.y += ") + (clusters ? "slice" : "view") +
-                   " * (($grid.w - 1u) / " + size + " + 1u);\n");
-    if (binned && !masks) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
-    if (!masks) writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
+        writer.add(R"(
+uint $id_at(uint at) {
+    return $lists[at];                                              @if ids_of_32
+    return ($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu;       @if ids_of_16
+    return ($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu;          @if ids_of_8
+}
+)");
+    writer.add(R"(
+struct $own_cursor {
+    uint id;
+    uint at;
+    uint end;
+    uint bits;      @if masks
+    uvec2 masks;    @if masks
+    uint ids;       @if masks
+    uvec2 bin;      @if masks binned
+    uint last;      @if !masks binned
+};
+)");
+    // `begin` reads nothing for a pixel outside of the grid, and divides by nothing: the constants may be unset, or
+    // describe a smaller image or other tiles. The cells of a view, and its bins, lie behind those of the views before.
+    //
     // Of masks, `at` and `end` are words, and `masks` is where those of the column and the row begin: see
     // LightMasks::words(). A bin without lights is {1, 0}, of which no bit is left.
-    if (masks)
-        writer.add("        uint words = $masks[0u];\n"
-                   "        c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);\n"
-                   "        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / " + size + ") * words;\n" +
-                   std::string(binned ? R"(        uint bin = c.ids + 32u * words + 2u * slice;
-        c.bin = uvec2($masks[bin], $masks[bin + 1u]);
-        c.at = c.bin.x >> 5u;
-        c.end = (c.bin.y >> 5u) + 1u;
-)"
-                                      : "        c.end = words;\n"));
-    else if (table)
-        writer.add("        uvec2 list = " +
-                   (textures && !options.tiles_in_uniform_block
-                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
-                        : "$tiles[place]") +
-                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
-    else {
-        const std::string each = std::to_string(format.capacity) + "u";
-        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " + each + ";\n");
+    //
+    // With z-bins the ids of lists are ranks, places of the lights in order of depth. The cursor skips ids below the
+    // bin's least rank: in a list of known length by binary search, in one that a sentinel ends by linear search.
+    writer.add(R"(
+$own_cursor $own_begin(uvec2 pixel, float view_depth@view_parameter) {
+)" + here + R"(    $own_cursor c;
+    c.at = 0u;
+    c.end = 0u;
+    c.id = 0u;
+    c.bits = 0u;                 @if masks
+    c.masks = uvec2(0u, 0u);     @if masks
+    c.ids = 0u;                  @if masks
+    c.bin = uvec2(0u, 0u);       @if masks binned
+    c.last = 0u;                 @if !masks binned
+    if (here.x < $grid.z && here.y < $grid.w@is_size@is_view) {
+        uvec2 tile = here / @size;
+        uint slice = $slice(view_depth);                            @if sliced
+        slice += view * ($slices[3u] + 1u);                         @if sliced several
+        tile.y += slice * (($grid.w - 1u) / @size + 1u);            @if clusters
+        tile.y += view * (($grid.w - 1u) / @size + 1u);             @if !clusters several
+        uint words = $masks[0u];                                                        @if masks
+        c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);     @if masks
+        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / @size) * words;                   @if masks
+        uint bin = c.ids + 32u * words + 2u * slice;                                    @if masks binned
+        c.bin = uvec2($masks[bin], $masks[bin + 1u]);                                   @if masks binned
+        c.at = c.bin.x >> 5u;                                                           @if masks binned
+        c.end = (c.bin.y >> 5u) + 1u;                                                   @if masks binned
+        c.end = words;                                                                  @if masks !binned
+        uvec2 bin = $bins[slice];                                                       @if !masks binned
+        c.last = bin.y;                                                                 @if !masks binned
+        uint place = tile.y * $grid.y + tile.x;                                         @if !masks
+        uvec2 list = @texel_of_tile.xy;                                                 @if table tiles_in_texture
+        uvec2 list = $tiles[place];                                                     @if table !tiles_in_texture
+        c.at = list.x;                                                                  @if table
+        c.end = list.x + list.y;                                                        @if table
+        c.at = place * @capacity;                                                       @if !masks !table
+        c.end = c.at + @capacity;                                                       @if !masks !table
+        uint end = c.end;                                                               @if table binned
+        while (c.at < end) {                                                            @if table binned
+            uint middle = c.at + ((end - c.at) >> 1u);                                  @if table binned
+            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }                         @if table binned
+            else { end = middle; }                                                      @if table binned
+        }                                                                               @if table binned
+        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }                    @if !masks !table binned
     }
-    // With z-bins ids are ranks, the places of the lights in order of depth. The cursor skips the ids below the bin's
-    // least rank: in a list of known length by binary search, in one that a sentinel ends by linear search.
-    if (binned && table)
-        writer.add(R"(        uint end = c.end;
-        while (c.at < end) {
-            uint middle = c.at + ((end - c.at) >> 1u);
-            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
-            else { end = middle; }
-        }
+    return c;
+}
 )");
-    else if (binned && !masks)
-        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
-
-    // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
-    // result that was not set where a function returns early.
-    writer.add("    }\n    return c;\n}\n");
     // The next light of masks. Without findLSB the exponent of the lowest bit, converted to float, is its index.
     const std::string next_bit = R"(    bool more = c.bits != 0u;
     if (more) {
-        uint bit = )" + std::string(dialect.storage_buffers
-                                        ? "uint(findLSB(c.bits))"
-                                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                                 R"(;
+        uint bit = uint(findLSB(c.bits));                                                   @if has_findLSB
+        uint bit = (floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u;         @if !has_findLSB
         c.bits &= c.bits - 1u;
         c.id = $masks[c.ids + 32u * (c.at - 1u) + bit];
 )";
-    // `lights_at` returns the bits of the word that a cursor is at; with z-bins only those of the bin's range.
+    // `lights_at` returns the bits of the word that a cursor is at; with z-bins only those of the bin's range. `next`
+    // has a single return statement, because in shader model 5.1 the compiler fxc complains of a result that was not
+    // set where a function returns early.
+    //
+    // With wave_loop all lanes of a wave go through the same words of masks, those that any lane needs, and in each
+    // word through the lights that any lane has.
     if (masks)
-        writer.add("\nuint $lights_at($own_cursor c) {\n"
-                   "    uint bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];\n" +
-                   std::string(binned ? R"(    if (c.at == c.bin.x >> 5u) { bits &= 0xffffffffu << (c.bin.x & 31u); }
-    if (c.at == c.bin.y >> 5u) { bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }
-)"
-                                      : "") +
-                   "    return bits;\n}\n");
-    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
-    if (masks)
-        writer.add(R"(    while (c.bits == 0u && c.at < c.end) {
+        writer.add(R"(
+uint $lights_at($own_cursor c) {
+    uint bits = $masks[c.masks.x + c.at] & $masks[c.masks.y + c.at];
+    if (c.at == c.bin.x >> 5u) { bits &= 0xffffffffu << (c.bin.x & 31u); }              @if binned
+    if (c.at == c.bin.y >> 5u) { bits &= 0xffffffffu >> (31u - (c.bin.y & 31u)); }      @if binned
+    return bits;
+}
+
+bool $own_next(inout $own_cursor c) {
+    while (c.bits == 0u && c.at < c.end) {
         c.bits = $lights_at(c);
         c.at += 1u;
     }
-)" + next_bit);
+)" + next_bit + R"(    }
+    return more;
+}
+)");
     else
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
-                   "        c.at += 1u;\n");
-    if (!table && !masks)
-        writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
-    if (binned && !masks) writer.add("        more = more && c.id <= c.last;\n");
-    writer.add("    }\n    return more;\n}\n");
-
-    // With wave_loop all lanes of a wave go through the same words of masks, those that any lane needs, and in each
-    // word through the lights that any lane has.
-    if (options.wave_loop && masks)
+        writer.add(R"(
+bool $own_next(inout $own_cursor c) {
+    bool more = c.at < c.end;
+    if (more) {
+        c.id = $id_at(c.at);
+        c.at += 1u;
+        more = c.id != @sentinel;           @if !table
+        more = more && c.id <= c.last;      @if binned
+    }
+    return more;
+}
+)");
+    if (options.wave_loop)
         writer.add(R"(
 struct $cursor {
     uint id;
@@ -287,11 +322,12 @@ struct $cursor {
     $own_cursor lane;
 };
 
-$cursor $begin)" + of_list + R"(    $cursor c;
+$cursor $begin(uvec2 pixel, float view_depth) {
+    $cursor c;
     c.id = 0u;
     c.own = false;
     c.bits = 0u;
-    $own_cursor lane = $own_begin)" + list_arguments + R"(;
+    $own_cursor lane = $own_begin(pixel, view_depth);
     c.lane = lane;
     uint first = 0xffffffffu;
     if (lane.at < lane.end) { first = lane.at; }
@@ -318,47 +354,21 @@ bool $next(inout $cursor c) {
     return more;
 }
 )");
-    // The wave's next light in lists is the least id among the next lights of its lanes.
-    else if (options.wave_loop)
-        writer.add(R"(
-struct $cursor {
-    uint id;
-    bool own;
-    bool more;
-    $own_cursor ahead;
-};
-
-$cursor $begin)" + of_list + R"(    $cursor c;
-    c.id = 0u;
-    c.own = false;
-    $own_cursor ahead = $own_begin)" + list_arguments + R"(;
-    c.more = $own_next(&ahead);
-    c.ahead = ahead;
-    return c;
-}
-
-bool $next(inout $cursor c) {
-    $own_cursor ahead = c.ahead;
-    if (c.own) { c.more = $own_next(&ahead); }
-    c.ahead = ahead;
-    uint own = 0xffffffffu;
-    if (c.more) { own = ahead.id; }
-    c.id = subgroupMin(own);
-    c.own = c.more && own == c.id;
-    return c.id != 0xffffffffu;
-}
-)");
     if (!dialect.webgpu)
-        writer.add("\n#define $for_each_light(cursor, pixel, view_depth" + view_argument +
-                   ") for ($cursor cursor = $begin" + list_arguments +
-                   (options.wave_loop ? "; $next(cursor);) if (cursor.own)\n" : "; $next(cursor);)\n"));
-    if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
-        writer.add("\nuint $count" + of_list + "    $own_cursor c = $own_begin" + list_arguments + ";\n" +
-                   std::string(table && !binned ? "    return c.end - c.at;\n"
-                                                : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
-                                                  "    return count;\n") +
-                   "}\n\nvec3 $heat(uvec2 pixel, float view_depth, float most" + view_parameter +
-                   ") {\n    float heat = float($count" + list_arguments + R"() / most;
+        writer.add("\n#define $for_each_light(cursor, pixel, view_depth@view_argument) for ($cursor cursor = "
+                   "$begin(pixel, view_depth@view_argument); $next(cursor);)@if_own\n");
+    if (options.heat_map)
+        writer.add(R"(
+uint $count(uvec2 pixel, float view_depth@view_parameter) {
+    $own_cursor c = $own_begin(pixel, view_depth@view_argument);
+    return c.end - c.at;                            @if length_known
+    uint count = 0u;                                @if !length_known
+    while ($own_next(&c)) { count += 1u; }          @if !length_known
+    return count;                                   @if !length_known
+}
+
+vec3 $heat(uvec2 pixel, float view_depth, float most@view_parameter) {
+    float heat = float($count(pixel, view_depth@view_argument)) / most;
     vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
     return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
 }
@@ -373,82 +383,65 @@ float $window(float apart, float range) {
     return w * w;
 }
 )");
-    if (options.view_check) {
-        std::string check = R"(    float depth = $depths.x * position.z;
-    float w = 1.0;
-    if ($depths.y > 0.0) { w = depth; }
-    vec2 at = $image.xy * position.xy / w + $image.zw;
-    vec2 apart = abs(at - (vec2(here) + 0.5));
-    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z)" +
-                            is_view + ";\n}\n";
-        // The constants of view v are elements 2v and 2v + 1 of an array. A view number that is too large is clamped to the
-        // last view's, so that no element beyond the array is read.
-        if (several)
-            check = "    uint first = 2u * min(view, " + std::to_string(options.views - 1) +
-                    "u);\n    vec4 image = $image[first];\n    vec4 depths = $image[first + 1u];\n" +
-                    replaced(replaced(check, "$image", "image"), "$depths", "depths");
-        writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
-                   "bool $check_view(uvec2 pixel, vec3 position" + view_parameter + ") {\n" + here + check);
-    }
-    // As a list's ids ascend, one pass over all ids, with the list's cursor beside it, finds those that the list lacks.
-    // Masks with z-bins have an order of their own, and are searched for each id.
-    if (options.list_check && masks && binned)
+    // The constants of view v are elements 2v and 2v + 1 of an array. A view number that is too large is clamped to the
+    // last view's, so that no element beyond the array is read.
+    if (options.view_check)
         writer.add(R"(
-// A light, and whether the pixel's masks lack it.
-struct $missing {
-    uint id;
-    bool lacked;
-    $own_cursor first;
-};
-
-$missing $begin_missing)" + of_list + R"(    $missing m;
-    m.id = 0xffffffffu;
-    m.lacked = false;
-    m.first = $own_begin)" + list_arguments + R"(;
-    return m;
-}
-
-bool $next_missing(inout $missing m, uint lights) {
-    m.id += 1u;
-    $own_cursor listed = m.first;
-    bool more = $own_next(&listed);
-    while (more && listed.id != m.id) { more = $own_next(&listed); }
-    m.lacked = !more;
-    return m.id < lights;
+// Whether the View has a position of view space in this pixel, and not before its near plane.
+bool $check_view(uvec2 pixel, vec3 position@view_parameter) {
+)" + here + R"(    uint first = 2u * min(view, @last_view);    @if several
+    vec4 image = $image[first];                 @if several
+    vec4 depths = $image[first + 1u];           @if several
+    float depth = @depths.x * position.z;
+    float w = 1.0;
+    if (@depths.y > 0.0) { w = depth; }
+    vec2 at = @image.xy * position.xy / w + @image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
+    return apart.x < @depths.w && apart.y < @depths.w && depth >= @depths.z@is_view;
 }
 )");
-    else if (options.list_check)
+    // As a list's ids ascend, one pass over all ids, with the list's cursor beside it, finds those that the list lacks.
+    // Masks with z-bins have an order of their own, and are searched for each id.
+    if (options.list_check)
         writer.add(R"(
-// A light, and whether the pixel's list lacks it.
+// A light, and whether the pixel's masks lack it.      @if searched
+// A light, and whether the pixel's list lacks it.      @if !searched
 struct $missing {
     uint id;
     bool lacked;
-    bool more;
-    $own_cursor listed;
+    bool more;              @if !searched
+    $own_cursor listed;     @if !searched
+    $own_cursor first;      @if searched
 };
 
-$missing $begin_missing)" + of_list + R"(    $own_cursor listed = $own_begin)" + list_arguments + R"(;
+$missing $begin_missing(uvec2 pixel, float view_depth@view_parameter) {
+    $own_cursor listed = $own_begin(pixel, view_depth@view_argument);       @if !searched
     $missing m;
     m.id = 0xffffffffu;
     m.lacked = false;
-    m.more = $own_next(&listed);
-    m.listed = listed;
+    m.more = $own_next(&listed);                                            @if !searched
+    m.listed = listed;                                                      @if !searched
+    m.first = $own_begin(pixel, view_depth@view_argument);                  @if searched
     return m;
 }
 
 bool $next_missing(inout $missing m, uint lights) {
     m.id += 1u;
-    $own_cursor listed = m.listed;
-    m.lacked = !(m.more && listed.id == m.id);
-    if (!m.lacked) { m.more = $own_next(&listed); }
-    m.listed = listed;
+    $own_cursor listed = m.first;                                           @if searched
+    bool more = $own_next(&listed);                                         @if searched
+    while (more && listed.id != m.id) { more = $own_next(&listed); }        @if searched
+    m.lacked = !more;                                                       @if searched
+    $own_cursor listed = m.listed;                                          @if !searched
+    m.lacked = !(m.more && listed.id == m.id);                              @if !searched
+    if (!m.lacked) { m.more = $own_next(&listed); }                         @if !searched
+    m.listed = listed;                                                      @if !searched
     return m.id < lights;
 }
 )");
     if (options.list_check && !dialect.webgpu)
-        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth" + view_argument +
-                   ") for ($missing cursor = $begin_missing" + list_arguments +
-                   "; $next_missing(cursor, lights);) if (cursor.lacked)\n");
+        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth@view_argument) for ($missing cursor "
+                   "= $begin_missing(pixel, view_depth@view_argument); $next_missing(cursor, lights);) "
+                   "if (cursor.lacked)\n");
     // In the text, names of what reads the list of one lane begin with `$own_`, where `$` is the prefix of all names.
     // With wave_loop this tells them from those of the loop that a wave shares. Without wave_loop `own_` is left out.
     return writer.finish(options.wave_loop ? "$own_" : "$");

@@ -9,6 +9,7 @@
 #include <lightbin/result.hpp>
 #include <lightbin/shader_text.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <string_view>
@@ -260,9 +261,33 @@ public:
 
     const Dialect dialect;
 
+    /// Sets the text that add() writes in place of `@name`.
+    void set(std::string_view name, std::string_view text) { names_.emplace_back(name, text); }
+    /// Sets by which conditions add() keeps lines.
+    void set(std::initializer_list<std::pair<const char*, bool>> conditions) {
+        for (const auto& [name, holds] : conditions)
+            set(name, holds ? "1" : "0");
+    }
+
     /// Appends text in the part of GLSL that the head of this file describes. `$name[i]` reads element i of the
-    /// ShaderBuffer `name`, whatever kind of resource it is.
-    LIGHTBIN_SMALL void add(std::string glsl) {
+    /// ShaderBuffer `name`, whatever kind of resource it is. `@name` stands for a text of set(), and a line that ends in
+    /// `@if a !b` is kept if the condition a holds, and b does not.
+    LIGHTBIN_SMALL void add(std::string_view text) {
+        std::string glsl;
+        for (std::size_t at = 0, end; at < text.size(); at = end) {
+            end = (std::min)(text.find('\n', at), text.size() - 1) + 1;
+            const std::string_view line = text.substr(at, end - at);
+            const std::size_t condition = line.find("@if ");
+            if (condition == line.npos)
+                glsl += line;
+            else if (holds(line.substr(condition + 4)))
+                (glsl += line.substr(0, line.find_last_not_of(' ', condition - 1) + 1)) += '\n';
+        }
+        for (std::size_t at = 0; (at = glsl.find('@', at)) != glsl.npos;)
+            if (const std::string_view name = word_at(glsl, at + 1); const std::string* const known = text_of(name))
+                glsl.replace(at, name.size() + 1, *known);
+            else
+                ++at;
         for (const ShaderBuffer& buffer : buffers_) {
             const std::string name = "$" + buffer.name + "[";
             for (std::size_t at = 0; (at = glsl.find(name, at)) != glsl.npos;) {
@@ -407,6 +432,24 @@ public:
     }
 
 private:
+    /// Returns whether all names of a condition such as "masks !binned" are set so.
+    bool holds(std::string_view condition) const {
+        for (std::size_t at = 0; at < condition.size(); ++at) {
+            const std::string_view name = word_at(condition, at);
+            const bool negated = at > 0 && condition[at - 1] == '!';
+            if (!name.empty() && *text_of(name) != (negated ? "0" : "1")) return false;
+            at += name.size();
+        }
+        return true;
+    }
+
+    /// Returns the text that set() was given for a name, or null.
+    const std::string* text_of(std::string_view name) const {
+        for (const auto& [known, text] : names_)
+            if (known == name) return &text;
+        return nullptr;
+    }
+
     /// Returns the expression that reads the element `index` of a buffer, a uint or a uvec2.
     LIGHTBIN_SMALL std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
@@ -464,6 +507,7 @@ private:
 
     std::string prefix_;
     ShaderText shader_;  // in GLSL until finish()
+    std::vector<std::pair<std::string, std::string>> names_;  // what set() was given
     std::vector<ShaderBuffer> buffers_;
     std::vector<WgslName> members_;  // the names of the constants in WGSL
 };
