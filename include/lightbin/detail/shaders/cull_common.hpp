@@ -35,14 +35,21 @@ inline std::uint32_t cull_record_words(const CullOptions& options) {
     return words + (options.kind == CullKind::spot ? 20u : 4u);
 }
 
-/// Returns the shader's expression for where the record of a light begins in `scratch`, from that for its id.
-inline std::string cull_record_of(const CullOptions& options, const std::string& id) {
-    return std::to_string(sizeof(CullTotals) / 4) + "u + " + id + " * " + std::to_string(cull_record_words(options)) +
-           "u";
-}
-
-/// Declares the members of CullConstants, without those that lights in view space don't need.
+/// Declares the members of CullConstants, without those that lights in view space don't need, and sets what the texts of
+/// all passes name. The record of a light with an id begins at word  @totals + id * @record_words  of `scratch`.
 inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    writer.set({{"clusters", clusters}, {"depth_test", options.depth_test}, {"world_space", options.world_space},
+                {"spots", options.kind == CullKind::spot}, {"orthographic", options.orthographic},
+                {"max_only", options.max_only && !clusters}, {"narrow", options.ids == IdWidth::u16},
+                {"count_in_buffer", options.count_in_buffer}});
+    writer.set("totals", std::to_string(sizeof(CullTotals) / 4) + "u");
+    writer.set("record_words", std::to_string(cull_record_words(options)) + "u");
+    writer.set("tested", clusters ? "3u" : "2u");  // where in a record what the depth test reads begins
+    // The numbers of layers of cells and, with 2^$blocks.w slices each, of mask blocks.
+    writer.set("cell_layers", clusters ? "$grid.z" : "1u");
+    writer.set("mask_layers", clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u");
+    writer.set("cells", clusters ? "$grid.x * $grid.y * $grid.z" : "$grid.x * $grid.y");
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
                                              {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
                                              {"vec4", "signs"},   {"vec4", "planes"}};
@@ -61,20 +68,14 @@ inline void add_saturated_sum(ShaderWriter& writer) {
     writer.add("\nuint $sum(uint a, uint b) {\n    return a + min(b, ~a);\n}\n");
 }
 
-/// Returns the shader's expression for the number of layers of mask blocks: with clusters one for each 2^$blocks.w
-/// slices, else one.
-inline const char* cull_layers(const CullOptions& options) {
-    return options.slicing == Slicing::clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u";
-}
-
 /// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks` before,
 /// `mark` for each light in view, and `write_masks` after. A mask block is a block of tiles, see plan_blocks(), that
 /// has a bitmask of the lights in it, 32 to a word.
-inline void add_masks_of_group(ShaderWriter& writer, const CullOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters;
+inline void add_masks_of_group(ShaderWriter& writer) {
     writer.declare_shared("block_bits", 2 * cull_max_blocks, true);
-    writer.add(std::string("\nuint $block_count() {\n    return $blocks.x * $blocks.y * ") + cull_layers(options) +
-               R"(;
+    writer.add(R"(
+uint $block_count() {
+    return $blocks.x * $blocks.y * @mask_layers;
 }
 
 void $clear_masks(uint thread) {
@@ -85,9 +86,10 @@ void $clear_masks(uint thread) {
 void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
     uint row_begin = (thread >> 5u) * $block_count();
     uint bit = 1u << (thread & 31u);
-)" + (clusters ? "    for (uint z = layers.x >> $blocks.w; z <= layers.y >> $blocks.w; z += 1u) {\n"
-                         : "    {\n        uint z = 0u;\n") +
-               R"(        for (uint y = rows.x >> $blocks.z; y <= rows.y >> $blocks.z; y += 1u) {
+    for (uint z = layers.x >> $blocks.w; z <= layers.y >> $blocks.w; z += 1u) {     @if clusters
+    {                                                                               @if !clusters
+        uint z = 0u;                                                                @if !clusters
+        for (uint y = rows.x >> $blocks.z; y <= rows.y >> $blocks.z; y += 1u) {
             uint row = row_begin + (z * $blocks.y + y) * $blocks.x;
             for (uint x = columns.x >> $blocks.z; x <= columns.y >> $blocks.z; x += 1u) {
                 atomicOr(&$block_bits[row + x], bit);

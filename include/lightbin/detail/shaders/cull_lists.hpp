@@ -18,9 +18,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// with: a tile's Z bounds, or a slice's depths. A Z bound that is NaN excludes nothing; it is recognised by its
 /// bits, as compilers may assume that no float is NaN, and infinity is made a finite depth beyond all lights that
 /// are tested.
-inline void add_cell_depths(ShaderWriter& writer, const CullOptions& options) {
-    const bool max_only = options.max_only && options.slicing != Slicing::clusters;
-    writer.add(std::string(R"(
+inline void add_cell_depths(ShaderWriter& writer) {
+    writer.add(R"(
 float $finite(float depth, float other) {
     uint bits = floatBitsToUint(depth);
     float result = clamp(depth, -1e30, 1e30);
@@ -34,7 +33,10 @@ float $finite(float depth, float other) {
 
 vec2 $depths_of(uint cell) {
     vec2 z = $z_bounds[cell];
-    return vec2()") + (max_only ? "-1e30" : "$finite(z.x, -1e30)") + ", $finite(z.y, 1e30));\n}\n");
+    return vec2($finite(z.x, -1e30), $finite(z.y, 1e30));      @if !max_only
+    return vec2(-1e30, $finite(z.y, 1e30));                    @if max_only
+}
+)");
 }
 
 /// Adds `meets_half_space`, which tells whether the box around a cell has a point p with  n.p <= most:  whether the
@@ -65,17 +67,14 @@ bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
 /// distances, each a difference, have a relative error of 2u, the sum of their squares of 10u, the Binner's of 5u;
 /// 2^-18 of the squared radius = 64u is more. 2^-80 is for squares that are flushed to zero.
 inline void add_cell_box(ShaderWriter& writer, const CullOptions& options) {
-    if (options.orthographic) {
-        writer.add("\nvec2 $across(vec2 sides, vec2 z) {\n    return sides;\n}\n");
-    } else {
-        writer.add(R"(
+    writer.add(R"(
 vec2 $across(vec2 sides, vec2 z) {
-    float low = min(sides.x * z.x, sides.x * z.y);
-    float high = max(sides.y * z.x, sides.y * z.y);
-    return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);
+    return sides;                                                                                   @if orthographic
+    float low = min(sides.x * z.x, sides.x * z.y);                                                  @if !orthographic
+    float high = max(sides.y * z.x, sides.y * z.y);                                                 @if !orthographic
+    return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);    @if !orthographic
 }
 )");
-    }
     if (options.kind == CullKind::spot) add_half_space(writer);
     writer.add(R"(
 float $apart(float at, vec2 ends) {
@@ -88,17 +87,18 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
     float y = $apart(uintBitsToFloat($scratch[at + 1u]), rows);
     float d = $apart(uintBitsToFloat($scratch[at + 2u]), z);
     bool met = radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
-)" + std::string(options.kind == CullKind::spot ? R"(    if (met && radius >= 0.0) {
-        for (uint i = 4u; i < 20u; i += 4u) { met = met && $meets_half_space(at + i, columns, rows, z); }
-    }
-)" : "") + "    return met;\n}\n");
+    if (met && radius >= 0.0) {                                                                             @if spots
+        for (uint i = 4u; i < 20u; i += 4u) { met = met && $meets_half_space(at + i, columns, rows, z); }   @if spots
+    }                                                                                                       @if spots
+    return met;
+}
+)");
 }
 
 /// Adds `tiles_met`, which returns what the rectangle of the light whose record begins at `at` covers of the 8x8 tiles
 /// from `corner` on: a bit for each column and, from bit 8 on, for each row; 0 if the light does not meet the slice.
-inline void add_tiles_met(ShaderWriter& writer, const CullOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters;
-    writer.add(std::string(R"(
+inline void add_tiles_met(ShaderWriter& writer) {
+    writer.add(R"(
 // Returns 8 bits for the tiles from `begin` on: set for those from `first` to `last`.
 uint $bits_of(uint first, uint last, uint begin) {
     uint low = max(first, begin) - begin;
@@ -113,9 +113,11 @@ uint $tiles_met(uint at, uvec2 corner, uint slice) {
     uint last = $scratch[at + 1u];
     uint bits = $bits_of(first & 0xffffu, last & 0xffffu, corner.x) |
                 ($bits_of(first >> 16u, last >> 16u, corner.y) << 8u);
-)") + (clusters ? R"(    uint slices = $scratch[at + 2u];
-    if (slice < (slices & 0xffffu) || slice > slices >> 16u) { bits = 0u; }
-)" : "") + "    return bits;\n}\n");
+    uint slices = $scratch[at + 2u];                                            @if clusters
+    if (slice < (slices & 0xffffu) || slice > slices >> 16u) { bits = 0u; }     @if clusters
+    return bits;
+}
+)");
 }
 
 inline void declare_stage(ShaderWriter& writer) {
@@ -129,11 +131,11 @@ inline void declare_stage(ShaderWriter& writer) {
 /// Adds `stage`, with which a group stages the lights of 32 words of a mask block, from word `first` on, and finds
 /// those in each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill;
 /// bits beyond the last light are 0.
-inline void add_stage(ShaderWriter& writer, const CullOptions& options) {
+inline void add_stage(ShaderWriter& writer) {
     writer.add(R"(
 uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
     if (thread < 8u) {
-        uint mask_blocks = $blocks.x * $blocks.y * )" + std::string(cull_layers(options)) + R"(;
+        uint mask_blocks = $blocks.x * $blocks.y * @mask_layers;
         uint word_count = (($segments.x + 63u) >> 6u) * 2u;
         uint counts = 0u;
         for (uint i = 0u; i < 4u; i += 1u) {
@@ -167,7 +169,7 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
     while (bits != 0u) {
         uint light = word * 32u + uint(findLSB(bits));
         bits &= bits - 1u;
-        uint record = )" + cull_record_of(options, "(first * 32u + light)") + R"(;
+        uint record = @totals + (first * 32u + light) * @record_words;
         $staged[at] = light | ($tiles_met(record, corner, slice) << 16u);
         at += 1u;
     }
@@ -192,49 +194,27 @@ uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) 
 )");
 }
 
-/// Returns the shader's lines that find the cell's depths and box. `drawn` is false if the cell is outside of the grid
-/// or its Z bounds are empty.
-inline std::string cull_cell(const CullOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters;
-    if (!options.depth_test) return "    bool drawn = inside;\n";
-    return std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
-           (clusters ? "slice" : "cell") + "); }\n    bool drawn = inside && z.x <= z.y;\n" +
-           // lights that are tested end before the depth 2^42
-           "    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, " +
-           (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
-    vec2 columns = vec2(0.0, 0.0);
-    vec2 rows = vec2(0.0, 0.0);
-    if (drawn) {
-        uint sides = )" + (clusters ? "$grid.z" : "$grid.x * $grid.y") + R"(;
-        columns = $across($z_bounds[sides + tile.x], z);
-        rows = $across($z_bounds[sides + $grid.x + tile.y], z);
-    }
-)";
-}
-
 /// Adds `store_id`, which writes an id to the lists. Ids of 16 bits share words, also with the lists before and
 /// after: `half` changes its own half of a word and no other, so it makes no difference which half is written
 /// first.
-inline void add_store_id(ShaderWriter& writer, const CullOptions& options) {
-    writer.add(options.ids == IdWidth::u32
-                   ? "\nvoid $store_id(uint at, uint id) {\n    if (at < $grid.w) { $lists[at] = id; }\n}\n"
-                   : R"(
+inline void add_store_id(ShaderWriter& writer) {
+    writer.add(R"(
 void $store_id(uint at, uint id) {
-    if (at < $grid.w) {
-        uint word = at >> 1u;
-        uint shift = (at & 1u) * 16u;
-        atomicAnd(&$lists[word], ~(0xffffu << shift));
-        atomicOr(&$lists[word], id << shift);
-    }
+    if (at < $grid.w) { $lists[at] = id; }                  @if !narrow
+    if (at < $grid.w) {                                     @if narrow
+        uint word = at >> 1u;                               @if narrow
+        uint shift = (at & 1u) * 16u;                       @if narrow
+        atomicAnd(&$lists[word], ~(0xffffu << shift));      @if narrow
+        atomicOr(&$lists[word], id << shift);               @if narrow
+    }                                                       @if narrow
 }
 )");
 }
 
 /// Adds the pass count or fill.
 inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fill) {
-    const bool clusters = options.slicing == Slicing::clusters, depths = options.depth_test,
-               narrow = options.ids == IdWidth::u16;
-    if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    const bool narrow = options.ids == IdWidth::u16;
+    if (options.depth_test) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
     declare_scratch(writer, options);
     if (fill) {
         writer.declare_storage("tiles", "uvec2", "writeonly", options.tiles, 8);
@@ -243,65 +223,79 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     }
     writer.add("\n");
     declare_stage(writer);
-    if (depths) {
-        add_cell_depths(writer, options);
+    if (options.depth_test) {
+        add_cell_depths(writer);
         add_cell_box(writer, options);
     }
-    add_tiles_met(writer, options);
-    add_stage(writer, options);
+    add_tiles_met(writer);
+    add_stage(writer);
     if (fill) {
         add_saturated_sum(writer);
-        add_store_id(writer, options);
+        add_store_id(writer);
     }
-    const std::string layer_count = clusters ? "$grid.z" : "1u";
+    writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
+    // Lights that are tested end before the depth 2^42.
+    writer.set("least_depth", options.orthographic ? "-4.3980465e12" : "$planes.x");
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
     uint block_columns = ($grid.x + 7u) >> 3u;
     uint block_plane = block_columns * (($grid.y + 7u) >> 3u);
-    uint block = number % max(block_plane * )" + layer_count + R"(, 1u);
-    uint segment = number / max(block_plane * )" + layer_count + R"(, 1u);
+    uint block = number % max(block_plane * @cell_layers, 1u);
+    uint segment = number / max(block_plane * @cell_layers, 1u);
     uint slice = block / max(block_plane, 1u);
     block %= max(block_plane, 1u);
     uvec2 corner = uvec2(block % max(block_columns, 1u), block / max(block_columns, 1u)) * 8u;
     uvec2 tile = corner + uvec2(thread & 7u, thread >> 3u);
     bool inside = segment < $segments.y && tile.x < $grid.x && tile.y < $grid.y;
-    uint cells = $grid.x * $grid.y * )" + layer_count + R"(;
+    uint cells = $grid.x * $grid.y * @cell_layers;
     uint cell = (slice * $grid.y + tile.y) * $grid.x + tile.x;
     uint mask_block = ((slice >> $blocks.w) * $blocks.y + (corner.y >> $blocks.z)) * $blocks.x;
     mask_block += corner.x >> $blocks.z;
-)" + cull_cell(options));
-    if (fill)
-        writer.add(R"(    uint at = 0u;
-    if (inside) {
-        uint range = $places.z + 2u * cell;
-        uint count = $scratch[range + 1u];
-        uint base = $sum($scratch[range], $scratch[$places.w + (cell >> 7u)]);
-        uint begin = min(base, $grid.w);
-        if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }
-        at = $sum(base, $scratch[$places.y + segment * cells + cell]);
-    }
-)");
-    else
-        writer.add("    uint count = 0u;\n");
-    writer.add(R"(    for (uint step = 0u; step < $segments.z; step += 1u) {
+    bool drawn = inside;                                                    @if !depth_test
+    vec2 z = vec2(0.0, 0.0);                                                @if depth_test
+    if (inside) { z = $depths_of(cell); }                                   @if depth_test !clusters
+    if (inside) { z = $depths_of(slice); }                                  @if depth_test clusters
+    bool drawn = inside && z.x <= z.y;                                      @if depth_test
+    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, @least_depth), $planes.z));   @if depth_test
+    vec2 columns = vec2(0.0, 0.0);                                          @if depth_test
+    vec2 rows = vec2(0.0, 0.0);                                             @if depth_test
+    if (drawn) {                                                            @if depth_test
+        uint sides = $grid.x * $grid.y;                                     @if depth_test !clusters
+        uint sides = $grid.z;                                               @if depth_test clusters
+        columns = $across($z_bounds[sides + tile.x], z);                    @if depth_test
+        rows = $across($z_bounds[sides + $grid.x + tile.y], z);             @if depth_test
+    }                                                                       @if depth_test
+    uint count = 0u;                                                        @if !fill
+    uint at = 0u;                                                           @if fill
+    if (inside) {                                                           @if fill
+        uint range = $places.z + 2u * cell;                                 @if fill
+        uint count = $scratch[range + 1u];                                  @if fill
+        uint base = $sum($scratch[range], $scratch[$places.w + (cell >> 7u)]);                          @if fill
+        uint begin = min(base, $grid.w);                                    @if fill
+        if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }                @if fill
+        at = $sum(base, $scratch[$places.y + segment * cells + cell]);      @if fill
+    }                                                                       @if fill
+    for (uint step = 0u; step < $segments.z; step += 1u) {
         uint first = (segment * $segments.z + step) * 32u;
         uint staged_words = $stage(first, mask_block, corner, slice, thread);
         for (uint i = 0u; i < staged_words; i += 1u) {
             uint met = $column_bits[i * 8u + (thread & 7u)] & $row_bits[i * 8u + (thread >> 3u)];
             if (!drawn) { met = 0u; }
-)" + (fill || depths ? R"(            while (met != 0u) {
-                uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);
-                met &= met - 1u;
-)" + (depths ? "                if (!$meets_box(" + cull_record_of(options, "id") +
-                   (options.slicing == Slicing::none ? " + 2u" : " + 3u") + ", columns, rows, z)) { continue; }\n"
-                       : std::string()) +
-               (fill ? "                $store_id(at, id);\n                at = $sum(at, 1u);\n"
-                     : "                count += 1u;\n") + "            }\n"
-                             : std::string("            count += uint(bitCount(met));\n")) +
-               "        }\n    }\n");
-    if (!fill) writer.add("    if (inside) { $scratch[$places.y + segment * cells + cell] = count; }\n");
-    writer.add("}\n");
+            count += uint(bitCount(met));                                   @if !each_light
+            while (met != 0u) {                                             @if each_light
+                uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);              @if each_light
+                met &= met - 1u;                                            @if each_light
+                if (!$meets_box(@totals + id * @record_words + @tested, columns, rows, z)) { continue; }    @if depth_test
+                count += 1u;                                                @if each_light !fill
+                $store_id(at, id);                                          @if fill
+                at = $sum(at, 1u);                                          @if fill
+            }                                                               @if each_light
+        }
+    }
+    if (inside) { $scratch[$places.y + segment * cells + cell] = count; }   @if !fill
+}
+)");
 }
 
 /// Adds `scan`, a prefix sum over the 128 numbers of a group, in `partial` (Hillis, Steele, "Data Parallel Algorithms",
@@ -329,10 +323,10 @@ void $scan(uint thread, uint own) {
 inline void add_sums(ShaderWriter& writer, const CullOptions& options) {
     declare_scratch(writer, options);
     add_scan(writer);
-    writer.add(std::string(R"(
+    writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
-    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint cells = @cells;
     uint cell = number * 128u + thread;
     uint count = 0u;
     if (cell < cells) {
@@ -378,9 +372,9 @@ void $total_lights(uint thread) {
 inline void add_offsets(ShaderWriter& writer, const CullOptions& options) {
     declare_scratch(writer, options);
     add_total_lights(writer);
-    writer.add(std::string(R"(
+    writer.add(R"(
 void $run(uvec2 group, uint thread) {
-    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint cells = @cells;
     uint sums = (cells + 127u) >> 7u;
     uint before = 0u;
     for (uint first = 0u; first < sums; first += 128u) {

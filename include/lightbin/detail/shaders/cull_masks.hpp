@@ -26,7 +26,7 @@ uint $mask_of(uint mask, uint first) {
     uint count = min($segments.x - first, 32u);
     uint bits = 0u;
     for (uint i = 0u; i < count; i += 1u) {
-        uint at = )" + cull_record_of(options, "(first + i)") + R"(;
+        uint at = @totals + (first + i) * @record_words;
         uint begin = ($scratch[at] >> shift) & 0xffffu;
         uint end = ($scratch[at + 1u] >> shift) & 0xffffu;
         if (begin <= tile && tile <= end) { bits |= 1u << i; }

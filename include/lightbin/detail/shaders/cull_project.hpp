@@ -16,41 +16,41 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
 /// one of its numbers exceeds 2^40, 3 for one that is switched off, else 2. The bits of floats without a sign ascend
 /// with the floats: those of 2^40 are 0x53800000, of infinity 0x7f800000. Those of -1 are 0xbf800000.
-inline void add_state(ShaderWriter& writer, const CullOptions& options) {
-    const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
-    const CullLayout& at = options.lights_at;
-    writer.add("\nuint $state_of(uint at) {\n    uint x = " + word(at.centre) + " & 0x7fffffffu;\n    uint y = " +
-               word(at.centre + 1) + " & 0x7fffffffu;\n    uint z = " + word(at.centre + 2) +
-               " & 0x7fffffffu;\n    uint radius = " + word(at.radius) + R"(;
+inline void add_state(ShaderWriter& writer) {
+    writer.add(R"(
+uint $state_of(uint at) {
+    uint x = $lights[at + @centre_x] & 0x7fffffffu;
+    uint y = $lights[at + @centre_y] & 0x7fffffffu;
+    uint z = $lights[at + @centre_z] & 0x7fffffffu;
+    uint radius = $lights[at + @radius];
     uint size = radius & 0x7fffffffu;
     uint state = 2u;
     if (max(max(x, y), max(z, size)) > 0x53800000u) { state = 1u; }
     if (max(max(x, y), z) >= 0x7f800000u || size > 0x7f800000u || radius > 0x80000000u) { state = 0u; }
+    uint axis = max(max(($lights[at + @axis_at_x] & 0x7fffffffu), ($lights[at + @axis_at_y] & 0x7fffffffu)), ($lights[at + @axis_at_z] & 0x7fffffffu));  @if spots
+    if ($lights[at + @cosine] != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || ($lights[at + @cosine] & 0x7fffffffu) > 0x3f800000u)) { state = 0u; }    @if spots
+    if (radius == 0xbf800000u) { state = 3u; }
+    return state;
+}
 )");
-    if (options.kind == CullKind::spot) add_spot_state(writer, options.lights_at);
-    writer.add("    if (radius == 0xbf800000u) { state = 3u; }\n    return state;\n}\n");
 }
 
 /// Adds the function `sphere_at`, which returns a light's sphere in view space, signed so that tile indices grow with x
 /// and y, and z is the view depth. It contains the Binner's sphere. The radius is made at least 2^-40, so that squares
 /// don't underflow.
-inline void add_sphere(ShaderWriter& writer, const CullOptions& options) {
-    const auto number = [&](std::uint32_t offset) {
-        return "uintBitsToFloat($lights[at + " + std::to_string(offset) + "u])";
-    };
-    const std::uint32_t centre = options.lights_at.centre;
-    writer.add("\nvec4 $sphere_at(uint at) {\n    vec3 centre = vec3(" + number(centre) + ", " +
-               number(centre + 1) + ", " + number(centre + 2) + ");\n    float radius = max(" +
-               number(options.lights_at.radius) +
-               ", 9.094947e-13);\n");
-    if (options.world_space)
-        writer.add(R"(    vec3 apart = centre - $origin.xyz;
-    float distance = abs(apart.x) + abs(apart.y) + abs(apart.z);
-    centre = $column_x.xyz * apart.x + $column_y.xyz * apart.y + $column_z.xyz * apart.z + $origin_image.xyz;
-    radius = radius * $origin.w + (distance * $column_x.w + $column_y.w);
-    if (distance > $origin_image.w) { radius = 2.0e12; }
+inline void add_sphere(ShaderWriter& writer) {
+    writer.add(R"(
+vec4 $sphere_at(uint at) {
+    vec3 centre = vec3(uintBitsToFloat($lights[at + @centre_x]), uintBitsToFloat($lights[at + @centre_y]), uintBitsToFloat($lights[at + @centre_z]));
+    float radius = max(uintBitsToFloat($lights[at + @radius]), 9.094947e-13);
+    vec3 apart = centre - $origin.xyz;                                              @if world_space
+    float distance = abs(apart.x) + abs(apart.y) + abs(apart.z);                    @if world_space
+    centre = $column_x.xyz * apart.x + $column_y.xyz * apart.y + $column_z.xyz * apart.z + $origin_image.xyz;   @if world_space
+    radius = radius * $origin.w + (distance * $column_x.w + $column_y.w);           @if world_space
+    if (distance > $origin_image.w) { radius = 2.0e12; }                            @if world_space
+    return vec4(centre * $signs.xyz, radius);
+}
 )");
-    writer.add("    return vec4(centre * $signs.xyz, radius);\n}\n");
 }
 
 /// Adds `quotient` and `root`, the operations that devices round worst.
@@ -145,20 +145,19 @@ vec2 $clipped(float c, float z, float r, float n) {
 /// beyond the Binner's own margin, by which it moves its edges outward, the GPU's must be 43u F + 2u |offset| + 6u
 /// tiles. It is 46u F + 8u (|offset| + tiles), see plan_axis(); the rest is for products of errors.
 inline void add_span(ShaderWriter& writer, const CullOptions& options) {
-    if (options.orthographic) {
-        writer.add("\nvec2 $bounds_of(float c, float z, float r) {\n    return vec2(c - r, c + r);\n}\n");
-    } else {
+    if (!options.orthographic) {
         add_tangents(writer);
         add_clipped(writer);
-        writer.add(R"(
+    }
+    writer.add(R"(
 vec2 $bounds_of(float c, float z, float r) {
-    vec2 bounds = vec2(0.0, 0.0);
-    if (z - r > $planes.w) { bounds = $tangents(c, z, r); }
-    else { bounds = $clipped(c, z, r, $planes.x); }
-    return bounds;
+    return vec2(c - r, c + r);                                          @if orthographic
+    vec2 bounds = vec2(0.0, 0.0);                                       @if !orthographic
+    if (z - r > $planes.w) { bounds = $tangents(c, z, r); }             @if !orthographic
+    else { bounds = $clipped(c, z, r, $planes.x); }                     @if !orthographic
+    return bounds;                                                      @if !orthographic
 }
 )");
-    }
     writer.add(R"(
 uvec2 $span(vec4 axis, uint tiles, vec2 bounds) {
     float low = bounds.x * axis.x + axis.y - axis.z;
@@ -202,64 +201,68 @@ uvec2 $slices_of(vec2 z) {
 )");
 }
 
-/// Returns the shader's lines that store what the depth test reads, from word `word` of the record on: the light's
-/// sphere, behind which `project` stores a spot's half spaces. A radius of -1 stands for a light that boxes don't
-/// exclude: one that counts as everywhere, or a spot that is not sound.
-inline std::string cull_depth_record(const CullOptions& options, const std::string& word) {
-    const auto put = [&](const char* index, const char* value) {
-        return "    $scratch[record + " + word + " + " + index + "u] = floatBitsToUint(" + value + ");\n";
-    };
-    if (!options.depth_test) return "";
-    return "    if (!bounded) { s.w = -1.0; }\n" + put("0", "s.x") + put("1", "s.y") + put("2", "s.z") + put("3", "s.w");
-}
-
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullOptions& options) {
-    const bool sliced = options.slicing != Slicing::none, box = options.depth_test,
-               spots = options.kind == CullKind::spot;
-    const std::string depths = sliced ? "3u" : "2u";  // where in a record what the depth test reads begins
+    const bool sliced = options.slicing != Slicing::none, spots = options.kind == CullKind::spot;
+    const CullLayout& layout = options.lights_at;
+    const auto word = [](std::uint32_t offset) { return std::to_string(offset) + "u"; };
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const char* const xyz[] = {"x", "y", "z"};
+        writer.set(std::string("centre_") + xyz[i], word(layout.centre + i));
+        writer.set(std::string("axis_at_") + xyz[i], word(layout.axis + i));
+    }
+    writer.set("radius", word(layout.radius));
+    writer.set("cosine", word(layout.cosine));
+    writer.set("stride", word(layout.stride));
+    writer.set("given", options.count_in_buffer ? "$light_count[" + std::to_string(options.count_at) + "]"
+                                                : "$segments.x");
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
     declare_scratch(writer, options);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
     if (options.count_in_buffer) writer.declare_storage("light_count", "uint", "readonly", options.light_count, 4);
     writer.add("\n");
     writer.declare_shared("tally", 1, true);
-    add_masks_of_group(writer, options);
-    add_state(writer, options);
-    add_sphere(writer, options);
+    add_masks_of_group(writer);
+    add_state(writer);
+    add_sphere(writer);
     if (!options.orthographic || spots) add_worst_operations(writer);
     add_span(writer, options);
     if (spots) add_spots(writer, options);
     if (sliced) add_slices(writer);
 
+    // With a depth test a record has the light's sphere, behind which `store_half_spaces` stores a spot's half spaces. A
+    // radius of -1 stands for a light that boxes don't exclude: one that counts as everywhere, or a spot that is not
+    // sound.
     writer.add(R"(
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
-    uint at = id * )" + std::to_string(options.lights_at.stride) + R"(u;
-    uint record = )" + cull_record_of(options, "id") + R"(;
+    uint at = id * @stride;
+    uint record = @totals + id * @record_words;
     uint state = $state_of(at);
     vec4 s = vec4(0.0, 0.0, 0.0, 1.0);
     if (state == 2u) {
         s = $sphere_at(at);
         if (max(max(abs(s.x), abs(s.y)), max(abs(s.z), s.w)) > 1.0995116e12) { state = 1u; }
     }
-)" + (box ? "    bool bounded = state == 2u;\n" : "") + R"(    bool seen = state == 1u;
+    bool bounded = state == 2u;                                             @if depth_test
+    bool seen = state == 1u;
     vec2 x = vec2(-1e30, 1e30);
     vec2 y = x;
     vec2 z = x;
     if (state == 2u) {
         z = vec2(s.z - s.w, s.z + s.w);
-)" + std::string(spots ? "        $spot spot = $spot_at(at, s);\n        z = spot.depths;\n" : "") +
-               (spots && box ? "        bounded = spot.sound;\n" : "") +
-               R"(        seen = z.y >= $planes.y && z.x <= $planes.z;
+        $spot spot = $spot_at(at, s);                                       @if spots
+        z = spot.depths;                                                    @if spots
+        bounded = spot.sound;                                               @if spots depth_test
+        seen = z.y >= $planes.y && z.x <= $planes.z;
         if (seen) {
-)" + (spots && box ? "            $store_half_spaces(record + " + depths + " + 4u, spot);\n" : "") +
-               (spots ? R"(            vec4 bounds = $bounds_of_spot(spot);
-            x = bounds.xy;
-            y = bounds.zw;
-)" : R"(            x = $bounds_of(s.x, s.z, s.w);
-            y = $bounds_of(s.y, s.z, s.w);
-)") + R"(        }
+            $store_half_spaces(record + @tested + 4u, spot);                @if spots depth_test
+            vec4 bounds = $bounds_of_spot(spot);                            @if spots
+            x = bounds.xy;                                                  @if spots
+            y = bounds.zw;                                                  @if spots
+            x = $bounds_of(s.x, s.z, s.w);                                  @if !spots
+            y = $bounds_of(s.y, s.z, s.w);                                  @if !spots
+        }
     }
     uvec2 columns = $span($axis_x, $grid.x, x);
     uvec2 rows = $span($axis_y, $grid.y, y);
@@ -270,10 +273,16 @@ uint $project(uint id, uint thread) {
     }
     $scratch[record] = columns.x | (rows.x << 16u);
     $scratch[record + 1u] = columns.y | (rows.y << 16u);
-)" + (sliced ? "    uvec2 layers = $slices_of(z);\n    if (state == 1u) { layers = uvec2(0u, $slices[3]); }\n"
-                       "    $scratch[record + 2u] = layers.x | (layers.y << 16u);\n"
-             : "    uvec2 layers = uvec2(0u, 0u);\n") +
-               cull_depth_record(options, depths) + R"(    if (seen) { $mark(thread, columns, rows, layers); }
+    uvec2 layers = uvec2(0u, 0u);                                           @if !clusters
+    uvec2 layers = $slices_of(z);                                           @if clusters
+    if (state == 1u) { layers = uvec2(0u, $slices[3]); }                    @if clusters
+    $scratch[record + 2u] = layers.x | (layers.y << 16u);                   @if clusters
+    if (!bounded) { s.w = -1.0; }                                           @if depth_test
+    $scratch[record + @tested + 0u] = floatBitsToUint(s.x);                 @if depth_test
+    $scratch[record + @tested + 1u] = floatBitsToUint(s.y);                 @if depth_test
+    $scratch[record + @tested + 2u] = floatBitsToUint(s.z);                 @if depth_test
+    $scratch[record + @tested + 3u] = floatBitsToUint(s.w);                 @if depth_test
+    if (seen) { $mark(thread, columns, rows, layers); }
     uint result = 0u;
     if (seen) { result = 0x10000u; }
     if (state == 0u) { result = 1u; }
@@ -286,13 +295,11 @@ void $run(uvec2 group, uint thread) {
     if (thread == 0u) { atomicStore(&$tally[0], 0u); }
     $clear_masks(thread);
     sync_group();
-    uint given = )" +
-               (options.count_in_buffer ? "$light_count[" + std::to_string(options.count_at) + "]" : "$segments.x") +
-               R"(;
+    uint given = @given;
     if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
-        $scratch[)" + cull_record_of(options, "id") + R"(] = 0x10001u;
-        $scratch[)" + cull_record_of(options, "id") + R"( + 1u] = 0u;
+        $scratch[@totals + id * @record_words] = 0x10001u;
+        $scratch[@totals + id * @record_words + 1u] = 0u;
     }
     if (id == 0u) { $scratch[3] = given; }
     sync_group();

@@ -9,26 +9,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Adds to `state_of` what makes a spot bad: a cosine that is NaN or beyond 1 or, unless it is -1, an axis that is not
-/// finite or zero.
-inline void add_spot_state(ShaderWriter& writer, const CullLayout& layout) {
-    const auto word = [&](std::uint32_t offset) { return "$lights[at + " + std::to_string(offset) + "u]"; };
-    const auto unsigned_word = [&](std::uint32_t offset) { return "(" + word(offset) + " & 0x7fffffffu)"; };
-    writer.add("    uint axis = max(max(" + unsigned_word(layout.axis) + ", " + unsigned_word(layout.axis + 1) + "), " +
-               unsigned_word(layout.axis + 2) + ");\n    if (" + word(layout.cosine) +
-               " != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || " + unsigned_word(layout.cosine) +
-               " > 0x3f800000u)) { state = 0u; }\n");
-}
-
 /// Adds the struct of a spot and the function `spot_at`, which reads one whose ball is given. A spot that counts as
 /// its ball has the axis 0, the cosine 0, the sine 1 and the tolerance 0. `least` is the least sphere around the
 /// spot, or its ball where that is hardly larger; `depths` are the spot's view depths. Where `sound` is false, the
 /// Binner may have the least sphere in place of the spot.
-inline void add_spot_at(ShaderWriter& writer, const CullOptions& options) {
-    const auto number = [&](std::uint32_t offset) {
-        return "uintBitsToFloat($lights[at + " + std::to_string(offset) + "u])";
-    };
-    const std::uint32_t axis = options.lights_at.axis;
+inline void add_spot_at(ShaderWriter& writer) {
     writer.add(R"(
 struct $spot {
     vec4 ball;
@@ -50,17 +35,15 @@ float $reach($spot s, float along, float across) {
 }
 
 $spot $spot_at(uint at, vec4 ball) {
-    vec3 axis = vec3()" + number(axis) + ", " + number(axis + 1) + ", " + number(axis + 2) + R"();
-    float cosine = )" + number(options.lights_at.cosine) + R"(;
+    vec3 axis = vec3(uintBitsToFloat($lights[at + @axis_at_x]), uintBitsToFloat($lights[at + @axis_at_y]), uintBitsToFloat($lights[at + @axis_at_z]));
+    float cosine = uintBitsToFloat($lights[at + @cosine]);
     float length1 = abs(axis.x) + abs(axis.y) + abs(axis.z);
     bool sound = cosine <= -1.0 || (length1 >= 9.5367432e-7 && length1 <= 1048576.0);
     float tolerance = ball.w * 1.5258789e-5;
-)" + (options.world_space ? "    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - " +
-                                number(options.lights_at.radius) + " * $origin.w, 0.0);\n"
-                                "    if ($column_z.w > 1.0) { sound = false; }\n"
-                                "    axis = $column_x.xyz * axis.x + $column_y.xyz * axis.y + $column_z.xyz * axis.z;\n"
-                          : std::string()) +
-               R"(    $spot s;
+    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - uintBitsToFloat($lights[at + @radius]) * $origin.w, 0.0);    @if world_space
+    if ($column_z.w > 1.0) { sound = false; }                                                       @if world_space
+    axis = $column_x.xyz * axis.x + $column_y.xyz * axis.y + $column_z.xyz * axis.z;                @if world_space
+    $spot s;
     s.ball = ball;
     s.least = ball;
     s.axis = vec3(0.0, 0.0, 0.0);
@@ -68,7 +51,7 @@ $spot $spot_at(uint at, vec4 ball) {
     s.sine = 1.0;
     s.tolerance = 0.0;
     s.size = abs(ball.x) + abs(ball.y) + abs(ball.z) + ball.w;
-    s.sound = sound && s.size <= 1.0995116e12 && )" + number(options.lights_at.radius) + R"( >= 9.094947e-13;
+    s.sound = sound && s.size <= 1.0995116e12 && uintBitsToFloat($lights[at + @radius]) >= 9.094947e-13;
     if (sound && cosine > -0.75) {
         s.axis = axis * $signs.xyz * $quotient(1.0, $root(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z));
         s.cosine = cosine;
@@ -174,7 +157,7 @@ vec2 $narrowed($spot s, vec2 bounds, float c, float axis, float other) {
 /// intersection of the ball's bounds and the least sphere's, as the Binner's are. In between it is not known which of
 /// these the Binner has, and they are the ball's.
 inline void add_spots(ShaderWriter& writer, const CullOptions& options) {
-    add_spot_at(writer, options);
+    add_spot_at(writer);
     if (options.depth_test) add_half_spaces(writer);
     if (options.orthographic) {
         writer.add(R"(
