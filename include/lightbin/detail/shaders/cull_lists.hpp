@@ -233,6 +233,7 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
         add_saturated_sum(writer);
         add_store_id(writer);
     }
+    writer.set("tested_record", "@totals + id * @record_words + @tested");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
     // Lights that are tested end before the depth 2^42.
     writer.set("least_depth", options.orthographic ? "-4.3980465e12" : "$planes.x");
@@ -286,7 +287,7 @@ void $run(uvec2 group, uint thread) {
             while (met != 0u) {                                             @if each_light
                 uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);              @if each_light
                 met &= met - 1u;                                            @if each_light
-                if (!$meets_box(@totals + id * @record_words + @tested, columns, rows, z)) { continue; }    @if depth_test
+                if (!$meets_box(@tested_record, columns, rows, z)) { continue; }        @if depth_test
                 count += 1u;                                                @if each_light !fill
                 $store_id(at, id);                                          @if fill
                 at = $sum(at, 1u);                                          @if fill

@@ -13,22 +13,43 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// Sets the expressions for the numbers of the light that begins at word `at` of the buffer `lights`.
+inline void name_numbers(ShaderWriter& writer, const CullLayout& layout) {
+    const auto word = [&](const std::string& name, std::uint32_t offset) {
+        const std::string text = "$lights[at + " + std::to_string(offset) + "u]";
+        writer.set(name, text);
+        return "uintBitsToFloat(" + text + ")";
+    };
+    const auto vector = [&](const std::string& name, std::uint32_t offset) {
+        const std::string x = word(name + "_x", offset), y = word(name + "_y", offset + 1);
+        writer.set(name, "vec3(" + x + ", " + y + ", " + word(name + "_z", offset + 2) + ")");
+    };
+    vector("centre", layout.centre);
+    vector("axis", layout.axis);
+    writer.set("radius", word("radius_word", layout.radius));
+    writer.set("cosine", word("cosine_word", layout.cosine));
+    writer.set("wide", "(@cosine_word & 0x7fffffffu) > 0x3f800000u");
+    writer.set("turned", "$column_x.xyz * apart.x + $column_y.xyz * apart.y + $column_z.xyz * apart.z");
+    writer.set("stretched", "@radius * $origin.w");
+    writer.set("stride", std::to_string(layout.stride) + "u");
+}
+
 /// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
 /// one of its numbers exceeds 2^40, 3 for one that is switched off, else 2. The bits of floats without a sign ascend
 /// with the floats: those of 2^40 are 0x53800000, of infinity 0x7f800000. Those of -1 are 0xbf800000.
 inline void add_state(ShaderWriter& writer) {
     writer.add(R"(
 uint $state_of(uint at) {
-    uint x = $lights[at + @centre_x] & 0x7fffffffu;
-    uint y = $lights[at + @centre_y] & 0x7fffffffu;
-    uint z = $lights[at + @centre_z] & 0x7fffffffu;
-    uint radius = $lights[at + @radius];
+    uint x = @centre_x & 0x7fffffffu;
+    uint y = @centre_y & 0x7fffffffu;
+    uint z = @centre_z & 0x7fffffffu;
+    uint radius = @radius_word;
     uint size = radius & 0x7fffffffu;
     uint state = 2u;
     if (max(max(x, y), max(z, size)) > 0x53800000u) { state = 1u; }
     if (max(max(x, y), z) >= 0x7f800000u || size > 0x7f800000u || radius > 0x80000000u) { state = 0u; }
-    uint axis = max(max(($lights[at + @axis_at_x] & 0x7fffffffu), ($lights[at + @axis_at_y] & 0x7fffffffu)), ($lights[at + @axis_at_z] & 0x7fffffffu));  @if spots
-    if ($lights[at + @cosine] != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || ($lights[at + @cosine] & 0x7fffffffu) > 0x3f800000u)) { state = 0u; }    @if spots
+    uint axis = max(max((@axis_x & 0x7fffffffu), (@axis_y & 0x7fffffffu)), (@axis_z & 0x7fffffffu));   @if spots
+    if (@cosine_word != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || @wide)) { state = 0u; }    @if spots
     if (radius == 0xbf800000u) { state = 3u; }
     return state;
 }
@@ -41,11 +62,11 @@ uint $state_of(uint at) {
 inline void add_sphere(ShaderWriter& writer) {
     writer.add(R"(
 vec4 $sphere_at(uint at) {
-    vec3 centre = vec3(uintBitsToFloat($lights[at + @centre_x]), uintBitsToFloat($lights[at + @centre_y]), uintBitsToFloat($lights[at + @centre_z]));
-    float radius = max(uintBitsToFloat($lights[at + @radius]), 9.094947e-13);
+    vec3 centre = @centre;
+    float radius = max(@radius, 9.094947e-13);
     vec3 apart = centre - $origin.xyz;                                              @if world_space
     float distance = abs(apart.x) + abs(apart.y) + abs(apart.z);                    @if world_space
-    centre = $column_x.xyz * apart.x + $column_y.xyz * apart.y + $column_z.xyz * apart.z + $origin_image.xyz;   @if world_space
+    centre = @turned + $origin_image.xyz;                                           @if world_space
     radius = radius * $origin.w + (distance * $column_x.w + $column_y.w);           @if world_space
     if (distance > $origin_image.w) { radius = 2.0e12; }                            @if world_space
     return vec4(centre * $signs.xyz, radius);
@@ -204,16 +225,7 @@ uvec2 $slices_of(vec2 z) {
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     const bool sliced = options.slicing != Slicing::none, spots = options.kind == CullKind::spot;
-    const CullLayout& layout = options.lights_at;
-    const auto word = [](std::uint32_t offset) { return std::to_string(offset) + "u"; };
-    for (std::uint32_t i = 0; i < 3; ++i) {
-        const char* const xyz[] = {"x", "y", "z"};
-        writer.set(std::string("centre_") + xyz[i], word(layout.centre + i));
-        writer.set(std::string("axis_at_") + xyz[i], word(layout.axis + i));
-    }
-    writer.set("radius", word(layout.radius));
-    writer.set("cosine", word(layout.cosine));
-    writer.set("stride", word(layout.stride));
+    name_numbers(writer, options.lights_at);
     writer.set("given", options.count_in_buffer ? "$light_count[" + std::to_string(options.count_at) + "]"
                                                 : "$segments.x");
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
@@ -230,8 +242,8 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     if (spots) add_spots(writer, options);
     if (sliced) add_slices(writer);
 
-    // With a depth test a record has the light's sphere, behind which `store_half_spaces` stores a spot's half spaces. A
-    // radius of -1 stands for a light that boxes don't exclude: one that counts as everywhere, or a spot that is not
+    // With a depth test a record has the light's sphere, behind which `store_half_spaces` stores a spot's half spaces.
+    // A radius of -1 stands for a light that boxes don't exclude: one that counts as everywhere, or a spot that is not
     // sound.
     writer.add(R"(
 // Projects a light, writes its record, and returns what it adds to the tally.

@@ -35,12 +35,12 @@ float $reach($spot s, float along, float across) {
 }
 
 $spot $spot_at(uint at, vec4 ball) {
-    vec3 axis = vec3(uintBitsToFloat($lights[at + @axis_at_x]), uintBitsToFloat($lights[at + @axis_at_y]), uintBitsToFloat($lights[at + @axis_at_z]));
-    float cosine = uintBitsToFloat($lights[at + @cosine]);
+    vec3 axis = @axis;
+    float cosine = @cosine;
     float length1 = abs(axis.x) + abs(axis.y) + abs(axis.z);
     bool sound = cosine <= -1.0 || (length1 >= 9.5367432e-7 && length1 <= 1048576.0);
     float tolerance = ball.w * 1.5258789e-5;
-    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - uintBitsToFloat($lights[at + @radius]) * $origin.w, 0.0);    @if world_space
+    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - @stretched, 0.0);     @if world_space
     if ($column_z.w > 1.0) { sound = false; }                                                       @if world_space
     axis = $column_x.xyz * axis.x + $column_y.xyz * axis.y + $column_z.xyz * axis.z;                @if world_space
     $spot s;
@@ -51,7 +51,7 @@ $spot $spot_at(uint at, vec4 ball) {
     s.sine = 1.0;
     s.tolerance = 0.0;
     s.size = abs(ball.x) + abs(ball.y) + abs(ball.z) + ball.w;
-    s.sound = sound && s.size <= 1.0995116e12 && uintBitsToFloat($lights[at + @radius]) >= 9.094947e-13;
+    s.sound = sound && s.size <= 1.0995116e12 && @radius >= 9.094947e-13;
     if (sound && cosine > -0.75) {
         s.axis = axis * $signs.xyz * $quotient(1.0, $root(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z));
         s.cosine = cosine;
