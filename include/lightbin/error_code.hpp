@@ -56,7 +56,6 @@ enum class ErrorCode : std::uint8_t {
     uniform_block_too_small,
     no_storage_buffers,
     no_texel_buffers,
-    no_byte_address_buffers,
     slot_out_of_range,
     views_out_of_range,
     no_sets,
@@ -140,7 +139,6 @@ inline constexpr const char* error_sentences[] = {
     ("GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists from a buffer "
      "texture (not ES), a 2D texture or a uniform block, reduce depth in a fragment shader, and bin lights on the CPU"),
     "GLSL ES and WGSL have no buffer textures: use a 2D texture, a uniform block or (not ES 3.00) a storage buffer",
-    "byte address buffers are HLSL's: use a storage buffer",
     "a binding and a set must be 0 or more, and one is {given}",
     "the option views must be 1 to {available}, and is {given}",
     "this language has no descriptor sets, register spaces or groups: each set must be 0, and one is {given}",
@@ -148,7 +146,7 @@ inline constexpr const char* error_sentences[] = {
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
     ("lists that are built on the GPU are of tiles or of clusters, not of z-bins; masks are of tiles or of z-bins, not "
      "of clusters, and have no depth test"),
-    "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
+    "wave loops go over masks, and need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
     "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("the option prefix must begin a name in every language: a letter, then letters, digits and single "

@@ -127,20 +127,19 @@ typedef enum lightbin_error {
     LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
     LIGHTBIN_NO_STORAGE_BUFFERS = 136,
     LIGHTBIN_NO_TEXEL_BUFFERS = 137,
-    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 138,
-    LIGHTBIN_SLOT_OUT_OF_RANGE = 139,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE = 140,
-    LIGHTBIN_NO_SETS = 141,
-    LIGHTBIN_NO_PUSH_CONSTANTS = 142,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 143,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER = 144,
-    LIGHTBIN_NO_WAVE_OPERATIONS = 145,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 146,
-    LIGHTBIN_BINDINGS_OVERLAP = 147,
-    LIGHTBIN_NOT_A_PREFIX = 148,
-    LIGHTBIN_TOO_MANY_SLICES = 149,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 150,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 151,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 138,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 139,
+    LIGHTBIN_NO_SETS = 140,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 141,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 142,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 143,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 144,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 145,
+    LIGHTBIN_BINDINGS_OVERLAP = 146,
+    LIGHTBIN_NOT_A_PREFIX = 147,
+    LIGHTBIN_TOO_MANY_SLICES = 148,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 149,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 150,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -516,8 +515,9 @@ typedef struct lightbin_grid {
  *
  * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number, or than 2^30; LIGHTBIN_TOO_MANY_ENTRIES,
  * LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 tiles in all lights' rectangles, cells, or
- * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED; LIGHTBIN_STRIDE_TOO_SMALL;
- * LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs. */
+ * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED;
+ * LIGHTBIN_STRIDE_TOO_SMALL; LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and
+ * LIGHTBIN_NOT_READ, of the inputs. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);
@@ -631,8 +631,7 @@ typedef enum lightbin_list_storage {
     LIGHTBIN_STORAGE_BUFFER = 0,
     LIGHTBIN_TEXEL_BUFFER = 1, /* buffer textures in GLSL, Buffer in HLSL; ES and WGSL have none */
     LIGHTBIN_TEXTURE_2D = 2,   /* 2D textures, in every language */
-    LIGHTBIN_UNIFORM_BLOCK = 3,
-    LIGHTBIN_BYTE_ADDRESS = 4 /* ByteAddressBuffer, in HLSL only */
+    LIGHTBIN_UNIFORM_BLOCK = 3
 } lightbin_list_storage;
 
 /* Where a resource is bound: binding and set in GLSL, register number and space in HLSL, binding and group in WGSL. */
@@ -655,7 +654,7 @@ typedef struct lightbin_snippet_options {
     int32_t flip_y;          /* the shader counts pixel rows from the opposite end to the view's origin */
     int32_t viewport_corner; /* the shader counts pixels in the window: subtract the constant `corner` */
     int32_t heat_map;        /* add the functions `count` and `heat`, which show a pixel's number of lights */
-    int32_t wave_loop;       /* the lanes of a wave (subgroup) loop together over the union of their lists */
+    int32_t wave_loop;       /* with masks: the lanes of a wave (subgroup) loop together over all that any lane has */
     int32_t view_check;      /* add the function `check_view`: whether a pixel shows a view-space position */
     int32_t list_check;      /* add the loop `for_each_missing` over the lights that a pixel's list lacks */
     int32_t window;          /* add the function `window`, as lightbin_light_window() */
@@ -681,8 +680,8 @@ typedef struct lightbin_shader lightbin_shader;
  * then loops over the lights of a pixel. docs/opengl.md, vulkan.md, direct3d.md and webgpu.md have whole shaders, and
  * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
  * with lightbin_shader_destroy(). Errors name the option that the language, the lists or the device do not allow:
- * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS,
- * LIGHTBIN_NO_WAVE_OPERATIONS; LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE,
+ * LIGHTBIN_NO_STORAGE_BUFFERS, LIGHTBIN_NO_TEXEL_BUFFERS, LIGHTBIN_NO_WAVE_OPERATIONS;
+ * LIGHTBIN_NO_SUCH_SLICING_SHADER, masks with clusters; LIGHTBIN_TILE_SIZE_OUT_OF_RANGE,
  * LIGHTBIN_VIEWS_OUT_OF_RANGE, LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE; LIGHTBIN_CAPACITY_UNKNOWN, LIGHTBIN_IDS_TOO_NARROW,
  * of the format; LIGHTBIN_BLOCK_SIZE_UNKNOWN, LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL; LIGHTBIN_NOT_A_PREFIX,
  * LIGHTBIN_SLOT_OUT_OF_RANGE, LIGHTBIN_NO_SETS, LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
@@ -703,10 +702,9 @@ typedef enum lightbin_shader_resource {
     LIGHTBIN_RESOURCE_PUSH_CONSTANTS = 2, /* Vulkan */
     /* Read-only; GLSL: std430 block; HLSL: StructuredBuffer, register t */
     LIGHTBIN_RESOURCE_STORAGE_BUFFER = 3,
-    LIGHTBIN_RESOURCE_BYTE_ADDRESS = 4,   /* HLSL: ByteAddressBuffer, register t */
-    LIGHTBIN_RESOURCE_TEXEL_BUFFER = 5,   /* GLSL: buffer texture; HLSL: Buffer, register t */
-    LIGHTBIN_RESOURCE_TEXTURE_2D = 6,     /* read without a sampler; GLSL: set NEAREST and no mipmaps */
-    LIGHTBIN_RESOURCE_WRITABLE_BUFFER = 7 /* a storage buffer that is written; HLSL: register u */
+    LIGHTBIN_RESOURCE_TEXEL_BUFFER = 4,   /* GLSL: buffer texture; HLSL: Buffer, register t */
+    LIGHTBIN_RESOURCE_TEXTURE_2D = 5,     /* read without a sampler; GLSL: set NEAREST and no mipmaps */
+    LIGHTBIN_RESOURCE_WRITABLE_BUFFER = 6 /* a storage buffer that is written; HLSL: register u */
 } lightbin_shader_resource;
 
 /* One resource that the program has to bind. */

@@ -35,7 +35,6 @@ enum class ShaderResource : std::uint8_t {
     uniform_block,    ///< GLSL: std140 block; HLSL: cbuffer, register b; WGSL: var<uniform>
     push_constants,   ///< Vulkan only
     storage_buffer,   ///< read-only. GLSL: std430 block; HLSL: StructuredBuffer, register t; WGSL: var<storage, read>
-    byte_address,     ///< HLSL: ByteAddressBuffer, register t
     texel_buffer,     ///< GLSL: buffer texture, in Vulkan a uniform texel buffer; HLSL: Buffer, register t
     texture_2d,       ///< read without a sampler. GLSL: set NEAREST, no mipmaps; WGSL: depth is "unfilterable-float"
     writable_buffer,  ///< a storage buffer that is written. HLSL: RWStructuredBuffer, register u; WGSL: read_write
@@ -43,7 +42,7 @@ enum class ShaderResource : std::uint8_t {
 
 constexpr const char* to_string(ShaderResource value) {
     return detail::name_at(value, {"uniform_vector", "uniform_block", "push_constants", "storage_buffer",
-                                   "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
+                                   "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
 /// The components of a texel: one or two unsigned integers of 8, 16 or 32 bits, or one float.

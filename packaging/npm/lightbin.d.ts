@@ -266,7 +266,7 @@ type Language = 'essl-300' | 'wgsl' | 'essl-310' | 'glsl-330' | 'glsl-430' | 'gl
 export interface SnippetOptions {
     language: Language;
     /** texture-2d or uniform-block for WebGL 2. Default: storage-buffer. */
-    storage?: 'storage-buffer' | 'texel-buffer' | 'texture-2d' | 'uniform-block' | 'byte-address';
+    storage?: 'storage-buffer' | 'texel-buffer' | 'texture-2d' | 'uniform-block';
     /** That of the binner. */
     slicing?: Slicing;
     /** Default: the lists of a binner whose ids have 32 bits. */
@@ -373,8 +373,8 @@ export interface CullPlan {
 /** One resource that the program has to bind. */
 export interface ShaderBinding {
     readonly name: string;
-    readonly resource: 'uniform-vector' | 'uniform-block' | 'push-constants' | 'storage-buffer' | 'byte-address'
-        | 'texel-buffer' | 'texture-2d' | 'writable-buffer';
+    readonly resource: 'uniform-vector' | 'uniform-block' | 'push-constants' | 'storage-buffer' | 'texel-buffer'
+        | 'texture-2d' | 'writable-buffer';
     readonly slot: Required<Slot>;
     readonly stride: number, bytes: number, width: number;
     /** The three arguments of texImage2D(); 0 if there are no texels. */

@@ -401,7 +401,7 @@ TEST_CASE("C: a view knows what it knows in C++") {
 TEST_CASE("C: shader texts are those of C++, in each language") {
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U8, 9};
     for (int language = LIGHTBIN_GLSL_430; language <= LIGHTBIN_WGSL; ++language)
-        for (int storage = LIGHTBIN_STORAGE_BUFFER; storage <= LIGHTBIN_BYTE_ADDRESS; ++storage) {
+        for (int storage = LIGHTBIN_STORAGE_BUFFER; storage <= LIGHTBIN_UNIFORM_BLOCK; ++storage) {
             CAPTURE(language);
             CAPTURE(storage);
             const int slicing = (language + storage) % 3;

@@ -264,7 +264,7 @@ void fuzz_snippet(Bytes& bytes) {
     SnippetOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
-    options.storage = take_enum(bytes, ListStorage::byte_address);
+    options.storage = take_enum(bytes, ListStorage::uniform_block);
     options.format.encoding = take_enum(bytes, ListEncoding::sentinel);
     options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
     options.format.capacity = take_size(bytes);
@@ -304,9 +304,7 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(options.storage == ListStorage::storage_buffer && language.old, ErrorCode::no_storage_buffers);
     refuse_if(options.storage == ListStorage::texel_buffer && (language.es || language.wgsl),
               ErrorCode::no_texel_buffers);
-    refuse_if(options.storage == ListStorage::byte_address && !language.hlsl,
-              ErrorCode::no_byte_address_buffers);
-    refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
+    refuse_if(options.wave_loop && (!masks || language.old || options.language == ShaderLanguage::hlsl_5_0),
               ErrorCode::no_wave_operations);
     refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
     refuse_if(masks && options.slicing == Slicing::clusters, ErrorCode::no_such_slicing_shader);

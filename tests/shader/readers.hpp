@@ -29,10 +29,9 @@ inline std::vector<lightbin::SnippetOptions> every_list(lightbin::SnippetOptions
     std::vector<SnippetOptions> every;
     for (const ListStorage storage :
          {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
-          ListStorage::uniform_block, ListStorage::byte_address}) {
+          ListStorage::uniform_block}) {
         if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
-            (storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu)) ||
-            (storage == ListStorage::byte_address && !dialect.hlsl))
+            (storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu)))
             continue;
         options.storage = storage;
         const bool texels = storage == ListStorage::texel_buffer || storage == ListStorage::texture_2d;
@@ -102,7 +101,7 @@ inline std::vector<lightbin::SnippetOptions> every_list(lightbin::ShaderLanguage
     return every;
 }
 
-/// The lists with wave loops, if the language has them.
+/// The masks with wave loops, if the language has them.
 inline std::vector<lightbin::SnippetOptions> every_wave_list(lightbin::ShaderLanguage language,
                                                             lightbin::Slicing slicing) {
     std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
@@ -112,16 +111,13 @@ inline std::vector<lightbin::SnippetOptions> every_wave_list(lightbin::ShaderLan
     return every;
 }
 
-/// The lists with two views; with waves every second one has wave loops, if the language has them.
+/// The lists with two views.
 inline std::vector<lightbin::SnippetOptions> every_list_of_views(lightbin::ShaderLanguage language,
-                                                                lightbin::Slicing slicing, bool waves) {
+                                                                lightbin::Slicing slicing) {
     std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
     std::erase_if(every, [](const lightbin::SnippetOptions& list) { return list.masks; });
-    for (std::size_t i = 0; i < every.size(); ++i) {
-        every[i].views = 2;
-        every[i].wave_loop = waves && i % 2 == 1;
-        every[i].wave_loop = every[i].wave_loop && shader_snippet(every[i]);
-    }
+    for (lightbin::SnippetOptions& list : every)
+        list.views = 2;
     return every;
 }
 
@@ -141,7 +137,7 @@ inline std::vector<lightbin::SnippetOptions> every_reader(lightbin::ShaderLangua
         }
         for (const lightbin::SnippetOptions& list : every_wave_list(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
-        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, true))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
@@ -318,7 +314,7 @@ inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) 
                         true});
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
-        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, false))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing))
             add(list);
     }
     return runs;
@@ -358,7 +354,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         if (waves)
             for (const lightbin::SnippetOptions& list : every_wave_list(language, slicing))
                 lists.push_back(list);
-        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing, waves))
+        for (const lightbin::SnippetOptions& list : every_list_of_views(language, slicing))
             lists.push_back(list);
         for (const lightbin::SnippetOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)

@@ -106,7 +106,7 @@ TEST_CASE("every enum has words") {
     check_words(ShaderLanguage::glsl_430, ShaderLanguage::wgsl);
     check_words(ShaderResource::uniform_vector, ShaderResource::writable_buffer);
     check_words(TexelFormat::none, TexelFormat::r32f);
-    check_words(ListStorage::storage_buffer, ListStorage::byte_address);
+    check_words(ListStorage::storage_buffer, ListStorage::uniform_block);
     static_assert(std::string_view(to_string(IdWidth::u8)) == "u8" &&
                   std::string_view(to_string(IdWidth::u16)) == "u16" &&
                   std::string_view(to_string(IdWidth::u32)) == "u32");

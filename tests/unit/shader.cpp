@@ -60,12 +60,11 @@ TEST_CASE("an option that is off leaves no line") {
                                      .flip_y = true,
                                      .viewport_corner = true,
                                      .heat_map = true,
-                                     .wave_loop = true,
                                      .view_check = true,
                                      .list_check = true,
                                      .window = true});
     only_in(all, storage,
-            {"here.y =", "0xffff", "corner", "heat", "count", "slice", "bin.", "own", "#extension", "image", "depths",
+            {"here.y =", "0xffff", "corner", "heat", "count", "slice", "bin.", "image", "depths",
              "check", "missing", "window", "uint view", "view)"});
 
     const std::string texture = text_of({.language = ShaderLanguage::glsl_330,
@@ -75,7 +74,9 @@ TEST_CASE("an option that is off leaves no line") {
     CHECK(!has(texture, "0xffff"));  // an R16UI texture is already one id a texel
     CHECK(!has(text_of({.slicing = Slicing::clusters}), "bins"));
     CHECK(!has(text_of({.tile_size = 16}), "/ lightbin_grid.x"));
-    CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .wave_loop = true}), "HLSL 6"));
+    only_in(text_of({.masks = true, .wave_loop = true}), text_of({.masks = true}), {"own", "#extension", "subgroup"});
+    CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .masks = true, .wave_loop = true}), "HLSL 6"));
+    CHECK(has(refusal({.wave_loop = true}), "masks"));
     // The words of a block's vectors are picked in a function alone: see ShaderWriter::declare(const ShaderBuffer&).
     const std::string blocks = text_of({.storage = ListStorage::uniform_block,
                                         .slicing = Slicing::clusters,

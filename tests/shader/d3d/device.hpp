@@ -100,13 +100,6 @@ private:
         case ShaderResource::storage_buffer:
             info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
             break;
-        case ShaderResource::byte_address:
-            info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
-            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_ALLOW_RAW_VIEWS;
-            view.Format = DXGI_FORMAT_R32_TYPELESS;
-            view.BufferEx.NumElements = bytes / 4;
-            view.BufferEx.Flags = D3D11_BUFFEREX_SRV_FLAG_RAW;
-            break;
         default:  // texel_buffer
             info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
             view.Format = static_cast<DXGI_FORMAT>(lightbin::dxgi_format(input.binding.format));

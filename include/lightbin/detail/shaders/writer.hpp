@@ -350,14 +350,11 @@ public:
             shader_.text += "uint " + name + "_word(uint at) {\n    return " + name + "[at >> 2u][at & 3u];\n}\n";
             return;
         }
-        const bool texture = buffer.resource == ShaderResource::texture_2d,
-                   untyped = buffer.resource == ShaderResource::byte_address;
-        declare_opaque(
-            {buffer.name, buffer.resource, buffer.slot, untyped ? TexelFormat::none : buffer.format, stride,
-             0, buffer.width},
-            {.glsl = texture ? "usampler2D" : "usamplerBuffer",
-             .hlsl = untyped ? "ByteAddressBuffer" : (texture ? "Texture2D<" : "Buffer<") + type + ">",
-             .wgsl = "texture_2d<u32>"});
+        const bool texture = buffer.resource == ShaderResource::texture_2d;
+        declare_opaque({buffer.name, buffer.resource, buffer.slot, buffer.format, stride, 0, buffer.width},
+                       {.glsl = texture ? "usampler2D" : "usamplerBuffer",
+                        .hlsl = (texture ? "Texture2D<" : "Buffer<") + type + ">",
+                        .wgsl = "texture_2d<u32>"});
     }
 
     /// Declares constants. In OpenGL each is a uniform by itself, unless `block` is true. In the other APIs they form one
@@ -458,8 +455,6 @@ private:
         if (buffer.resource == ShaderResource::uniform_block)
             return pairs ? "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")"
                          : word(index);
-        if (buffer.resource == ShaderResource::byte_address)
-            return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
         const std::string components = pairs ? ".xy" : ".x";
         const std::string at = "int((" + index + ")", width = std::to_string(buffer.width) + "u)";
         if (buffer.resource == ShaderResource::texture_2d)
@@ -500,9 +495,9 @@ private:
     /// same number. HLSL: the register type. OpenGL: uniform blocks (b), storage buffers (s) and textures (t) are
     /// numbered apart. Vulkan and WebGPU: all resources of a set are numbered together. '-': no binding.
     char numbering_of(const ShaderBinding& binding) const {
-        return (dialect.hlsl                      ? "-b-ttttu"
-                : dialect.vulkan || dialect.webgpu ? "-b-bbbbb"
-                                                   : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
+        return (dialect.hlsl                      ? "-b-tttu"
+                : dialect.vulkan || dialect.webgpu ? "-b-bbbb"
+                                                   : "-b-stts")[static_cast<std::size_t>(binding.resource)];
     }
 
     std::string prefix_;
