@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The functions of lightbin.h, for the file that defines LIGHTBIN_IMPLEMENTATION. LIGHTBIN_NO_ defines leave out what
 // the program never asks for: docs/c.md names them all, and says what each saves. Functions that are left out are not
-// there; options, kinds of lights and threads that are left out are refused by the define's name.
+// there; options and kinds of lights that are left out are refused by the define's name.
 #pragma once
 
 #if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_REDUCE_SHADERS)

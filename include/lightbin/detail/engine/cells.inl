@@ -60,7 +60,7 @@ inline void fill_8_floats(float* to, float value) {
 
 /// The cells of a block's tiles, with which the depth test compares the block's lights.
 struct BlockCells {
-    float boxes[6 * 64];   ///< the boxes around the cells, as store_boxes() lays them out
+    float boxes[6 * 64];   ///< the view-space boxes around the tiles' cells, as store_boxes() lays them out
     TileEdges edges;       ///< the edges of the cells' tiles
     std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
     DepthInterval depths;  ///< an interval that holds the view depths of the cells of all tiles in `drawn`

@@ -137,7 +137,7 @@ void mask_lights(const BinJob& job, Scratch& scratch, const Slab& slab, unsigned
     list.count = kept;
 }
 
-/// See lists.inl, where list_lights() calls it.
+/// Finds in which tiles of a block each of its lights is listed, by the depth test. lists.inl declares it.
 template <Tested tested, LightKind kind>
 void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                        BlockList& list) {

@@ -37,7 +37,7 @@ void make_masks(const FootprintArrays& lights, std::span<const FootprintRun> run
             ++in_column;
             ++in_row;
         }
-    // Several words of each mask at once, whose sums stay in registers.
+    // Sums up several words of each mask at once, so that the sums stay in registers.
     std::size_t word = 0;
     const auto sum_up = [&]<std::size_t count>() {
         std::uint32_t sums[count] = {};

@@ -18,7 +18,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 struct SlabCells {
     static constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
 
-    /// The block begins at column 8 * x and row `top`.
+    /// slab    the boxes around all cells of the depth slice
+    /// x, top  the block of 8x8 tiles begins at tile column 8 * x and tile row `top`
     SlabCells(const SlabBoxes& slab, unsigned x, unsigned top) : z0(slab.z0), z1(slab.z1) {
         for (unsigned i = 0; i < vectors; ++i) {
             x0[i] = load_floats(slab.ends[0] + 8 * x + i * lanes);

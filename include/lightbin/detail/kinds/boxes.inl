@@ -301,7 +301,7 @@ LIGHTBIN_INLINE unsigned good_boxes(Mask safe, const Floats (&given)[17], unsign
 /// rounding errors are small enough.
 ///
 /// shown  a bit for each box that may be in view
-/// whole  a mask of the boxes off which their balls cut nothing
+/// whole  a mask of the boxes off which the spheres that cut them cut nothing
 template <class Mask>
 LIGHTBIN_INLINE Mask find_box_slopes(const Camera& camera, const ViewLanes& view, const BoxLanes<Floats>& box,
                                      Floats ball_z, unsigned shown, Mask whole, BoxBounds<Floats>& bounds) {

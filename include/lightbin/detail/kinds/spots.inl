@@ -37,7 +37,7 @@ struct RimLanes {
     Floats axis_z;     ///< the depth coordinate of the cone's unit axis
     Floats cosine2;    ///< the square of the cosine of the cone's half angle, with the cosine's sign
     Floats along;      ///< the distance from the cone's apex to the centre of the rim, where cone and ball meet
-    Floats rho, rho2;  ///< the radius of the rim, where cone and ball meet, and its square
+    Floats rho, rho2;  ///< the radius of the rim, the circle in which the cone meets its sphere, and its square
     Floats rim_z;      ///< the view depth of the centre of the rim, where cone and ball meet
     Floats per_a;      ///< 1 / A, where the slopes s of planes that touch the rim solve  A s^2 - 2 B s + C = 0
     Floats error;      ///< a slope's error is at most this times (1 + |slope|)

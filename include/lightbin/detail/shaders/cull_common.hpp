@@ -9,7 +9,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 // Numbers that the texts and the plan share.
-inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< of tiles: 64 lights' bits take 8 KB of shared memory
+/// The most blocks of tiles with a mask of their lights: the bits of 64 lights then take 8 KB of shared memory.
+inline constexpr std::uint32_t cull_max_blocks = 1024;
 inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a word has a light's first and last slice, 16 bits each
 
 /// Returns the first error among the options, or nothing.

@@ -114,7 +114,7 @@ void $store_half_spaces(uint at, $spot s) {
 
 /// Adds `narrowed`, the slopes of a spot along an image axis: narrow_slopes() of kinds/spots.inl.
 ///
-/// bounds       the slopes of the ball
+/// bounds       the slopes of the sphere that the spot's cone cuts
 /// c            the apex's coordinate along the image axis
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
 inline void add_narrowed(ShaderWriter& writer) {
