@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The file in C++20. It leaves out what light_lists.hpp does not ask for: docs/c.md has a table of what that saves.
+// The one C++20 file of the SimGear adapter. It leaves out what light_lists.hpp does not use: docs/c.md lists what that
+// saves.
 #define LIGHTBIN_NO_BOXES
 #define LIGHTBIN_NO_U16
 #define LIGHTBIN_NO_Z_BINS
