@@ -37,8 +37,7 @@ inline double depth_within(const lightbin::Spot& spot, const glm::dvec3& point) 
     return std::min(in_sphere, along - static_cast<double>(spot.cos_half_angle) * distance);
 }
 
-/// The lights that reach every n-th drawn pixel, in x and y. Pixels are sorted by blocks of 8x8, so that one list is
-/// read often in a row.
+/// The lights that reach every n-th drawn pixel in x and y; pixels are sorted by blocks of 8x8.
 class Needed {
 public:
     struct Pixel {
@@ -110,8 +109,7 @@ private:
     std::vector<std::uint32_t> candidates_;
 };
 
-/// The light evaluations and words of masks that a picture's pixels read, compared with the lights that truly reach
-/// them.
+/// Light evaluations and words of masks that a picture's pixels read, and the lights that these lack.
 struct Reading {
     std::uint64_t evaluations = 0, words = 0;  ///< words are those of masks
     std::uint64_t misses = 0;            ///< lights that reach a pixel but are not in its list

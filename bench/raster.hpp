@@ -23,8 +23,7 @@ struct Picture {
     static constexpr std::uint32_t nothing = ~std::uint32_t{0};
 };
 
-/// Half the width and height of what is seen at view depth 1, and the near and far plane, of a symmetric perspective
-/// matrix.
+/// Half the extent of what is seen at view depth 1, and the near and far plane, of a symmetric perspective matrix.
 struct Frustum {
     double x, y, near_depth, far_depth;
 

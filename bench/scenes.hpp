@@ -218,8 +218,7 @@ inline BenchScene foliage() {
     });
 }
 
-/// A spot as a scene's author gives it. Always made with braces, where all compilers draw the random numbers in the
-/// same order.
+/// A spot as an author gives it. Made with braces: compilers then draw the random numbers in one order.
 struct Beam {
     glm::vec3 from;
     float range;
@@ -231,8 +230,7 @@ struct Beam {
     }
 };
 
-/// Makes a street at night: lamps above it, head lamps, lights shining up the walls, and lamps in the rooms behind
-/// them.
+/// Makes a street at night: lamps above it, head lamps, lights up the walls, and lamps in rooms behind them.
 inline BenchScene street_lamps() {
     return street_canyon().spot_scene("lamps", 1000, [](Dice& dice, std::size_t i) {
         const float side = dice.between(0, 1) < 0.5f ? -1.0f : 1.0f, z = dice.between(-300, 0);
@@ -288,8 +286,7 @@ inline BenchScene stage() {
     });
 }
 
-/// Makes a car park at night seen from a window: masts with four lamps each, head lamps, and small lamps along the
-/// paths.
+/// Makes a car park at night: masts with four lamps each, head lamps, and small lamps along the paths.
 inline BenchScene car_park() {
     SceneBuilder world({0, 11, 45}, {0, 0, -30});
     Dice dice(6);

@@ -14,9 +14,8 @@ using Lights = std::vector<glm::vec4>;
 
 inline constexpr float tan_half_fov = 0.57735027f, aspect = 16.0f / 9.0f;
 
-/// Returns lights of which 80 % are uniform in the frustum's volume from depth 1 to 200, and 20 % outside it in a box
-/// of +-260 x +-160 x -50..250. Radii are lognormal with sigma 0.5; the median radius sets how many tiles a light
-/// covers.
+/// Returns lights: 80 % uniform in the frustum's volume from depth 1 to 200, 20 % outside in a box of +-260 x +-160 x
+/// -50..250; radii lognormal, sigma 0.5. The median radius sets how many tiles a light covers.
 inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0, 1), side(-1, 1);

@@ -37,8 +37,7 @@ inline lightbin::View made_view(int tile_size) {
     return *lightbin::View::from_projection(glm::mat4(Lens().projection()), Lens().screen, {.tile_size = tile_size});
 }
 
-/// Random least and greatest depths for each tile, where a sphere around a light can be; the interval is 6 % of the
-/// depth.
+/// Random depth intervals of tiles, near enough for a sphere around a light to meet; 6 % of the depth deep.
 struct DrawnBounds {
     std::vector<float> min, max;
 
@@ -175,8 +174,7 @@ inline ShapeErrors measure_shapes(const char* path, const char* header, const ch
     return errors;
 }
 
-/// Measures spots by half angle, as the sphere of their range, as their least sphere and as spots; writes
-/// spots_error.csv.
+/// Measures spots by half angle, as their range's sphere, their least sphere and spots; writes spots_error.csv.
 inline ShapeErrors measure_spots(std::size_t spots) {
     std::vector<ShapeFamily> families;
     std::uint32_t seed = 0;

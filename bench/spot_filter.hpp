@@ -115,8 +115,7 @@ struct Corner {
     Point at, off;
 };
 
-/// Returns the weights of the corners for the point of their affine hull nearest to the spot; nothing if they are
-/// nearly in one plane or line.
+/// Returns the corners' weights for the point of their affine hull nearest to the spot; nothing if too flat.
 inline std::optional<std::array<double, 4>> nearest_weights(const std::vector<Corner>& corners) {
     const std::size_t n = corners.size() - 1;
     double m[3][4] = {};  // the sides' products, and on the right those with the first corner

@@ -33,8 +33,7 @@ inline lightbin::Spot spot_in(const glm::vec4& sphere, Dice& dice, float half_an
             axis.x,   axis.y,   axis.z,   std::cos(glm::radians(half_angle_in_degrees))};
 }
 
-/// Returns spots whose spheres are those of field() in sets.hpp, with random directions and half angles of 10 to 80
-/// degrees.
+/// Returns spots with the spheres of field() in sets.hpp, random directions, half angles of 10 to 80 degrees.
 inline Spots spot_field(std::size_t count, float median_range, std::uint32_t seed) {
     Dice dice(seed);
     Spots spots;

@@ -237,8 +237,7 @@ private:
 
     static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
 
-    /// Returns the cell's squared distance from the ball's centre and the depth of the nearest point, as oracle.hpp
-    /// does.
+    /// Returns the cell's squared distance from the ball's centre, and the depth of the nearest point.
     static double nearest(const Cell& cell, const FlatDepths& depths, const FlatBall& c, double& best_d) {
         const double centre[2] = {c.x, c.y};
         double best = std::numeric_limits<double>::infinity();

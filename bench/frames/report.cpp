@@ -57,8 +57,7 @@ double percent_different(const Row& row) {
     return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
 }
 
-/// Returns the least time, in milliseconds, of the pass that lights surfaces while it draws them; 0 if their depth was
-/// drawn before.
+/// Returns the least milliseconds of the pass that draws and lights surfaces; 0 if their depth was drawn before.
 double shading(const Row& row) {
     if (row.passes.empty() || row.passes.front().first != "bin") return 0;
     return row.passes.back().second.least;
@@ -70,8 +69,7 @@ double sum(const std::vector<Row>& rows, double (*value)(const Row&)) {
     return all;
 }
 
-/// Returns a table row for each technique: means over the views, and in brackets the least and the greatest value. For
-/// a single view the values of its frames are used.
+/// Returns a table row for each technique: means, and in brackets least and greatest, over views or a view's frames.
 std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
     std::vector<TableRow> table = {{"", "ms", "million evaluations", "MB", "differs", "shading", "words"}};
     double of_lists = 0;

@@ -53,8 +53,7 @@ class Runner {
 public:
     Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOut& left_out);
 
-    /// Draws a view by every technique, after the reference picture. Settings that a technique does not set itself are
-    /// as given.
+    /// Draws a view by every technique, after the reference picture, with these settings where a technique has none.
     std::vector<Row> run(const std::string& table, const Camera& camera,
                          const std::vector<Technique>& techniques, Settings wanted);
     /// The picture of the last run, RGBA.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the shaders' texts. All techniques share one surface and one lighting function; they differ in how lights are
-// found.
+// Writes the shaders' texts: one surface and one lighting function for all techniques, however lights are found.
 #pragma once
 
 #include "settings.hpp"
@@ -35,8 +34,7 @@ public:
     /// Lights a pixel of the G-buffer.
     std::string deferred_fragment(const LightLookup& lights) const;
 
-    /// Fragment shaders for light after light, added up in radiance_texture: ambient light, one light, and the final
-    /// colours.
+    /// Fragment shaders that add up radiance_texture light by light: ambient, one light, and the final colours.
     std::string ambient_fragment() const;
     std::string one_light_fragment() const;
     std::string show_fragment() const;

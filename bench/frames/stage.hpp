@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all techniques draw with: the scene, the view and lights of a frame, shader programs, textures to draw to, a
-// clock.
+// What all techniques draw with: scene, view and lights of a frame, shader programs, textures to draw to, a clock.
 #pragma once
 
 #include "geometry.hpp"
@@ -31,8 +30,7 @@ struct Pass {
 /// Returns whether OpenGL draws on the CPU, whose times say little about a GPU.
 bool is_software_renderer();
 
-/// The tiles that a light in view covers, first and last included, and its least and greatest view depth. Shaders read
-/// two uvec4.
+/// The tiles that a light covers, first and last included, and its least and greatest view depth, as two uvec4.
 struct LightFootprint {
     std::uint32_t id;
     std::uint16_t x0, y0, x1, y1;
@@ -66,11 +64,9 @@ public:
     const Settings& settings() const { return settings_; }
     Shaders shaders() const { return {glsl_, settings_}; }
     lightbin::View view(int tile_size = 0) const;  ///< a tile size of 0 means the settings' tile size
-    /// Returns the lights in view space, sorted by the depth where they begin: ids and ranks in depth are the same
-    /// order.
+    /// Returns the lights in view space, sorted by the depth where they begin: ids are then ranks in depth.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
-    /// Returns the tiles and depths of the lights in view, by ascending id. A tile size of 0 means the settings' tile
-    /// size.
+    /// Returns tiles and depths of the lights in view, by ascending id. A tile size of 0 means the settings' tile size.
     std::vector<LightFootprint> footprints(int tile_size = 0) const;
     /// Uploads the lights in this order, for lists of ranks in depth.
     void order_lights(std::span<const std::uint32_t> order);

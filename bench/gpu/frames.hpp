@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The lights that lists are made of: random lights in view space (field() in bench/sets.hpp), and Bevy's many_lights in
-// world space.
+// The lights that lists are made of: random ones in view space (bench/sets.hpp), Bevy's many_lights in world space.
 #pragma once
 
 #include "../lens.hpp"

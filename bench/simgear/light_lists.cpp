@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one C++20 file of the SimGear adapter. It leaves out what light_lists.hpp does not use: docs/c.md lists what that
+// The SimGear adapter's one C++20 file. It leaves out what light_lists.hpp does not use: docs/c.md says what that
 // saves.
 #define LIGHTBIN_NO_BOXES
 #define LIGHTBIN_NO_U16

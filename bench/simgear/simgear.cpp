@@ -80,8 +80,7 @@ public:
     }
     void update(const SGLightList& lights) { shading_->update(lights); }
 
-    /// Returns whether the shader, which computes in float, finds light number `light` of its kind at a pixel and a
-    /// depth.
+    /// Returns whether the shader, in float, finds light number `light` of its kind at a pixel and a depth.
     bool lists(int x, int y, float depth, int light, bool is_spot) const {
         const float at =
             std::log2(depth) * uniform("fg_ClusteredSliceScale") + uniform("fg_ClusteredSliceBias");

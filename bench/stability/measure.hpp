@@ -265,8 +265,7 @@ private:
         }
     }
 
-    /// Adds the distance between two bounds within the picture. A bound that is NaN counts as wrong by the whole
-    /// picture.
+    /// Adds the distance between two bounds within the picture; for a bound that is NaN, the picture's size.
     static void add_error(Tally& tally, const Camera& camera, const oracle::AxisExtent* truth,
                           const Bounds& bounds) {
         const int sides[] = {camera.width, camera.height};

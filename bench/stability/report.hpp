@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reports the results: a table with a line for each family of conditions, stability.csv, and stability.page for
-// bench/page.sh.
+// Reports results: a table with a line for each family, stability.csv, and stability.page for bench/page.sh.
 #pragma once
 
 #include "measure.hpp"
@@ -75,8 +74,7 @@ inline std::string percent(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? "-" : percent(double(part) / double(whole));
 }
 
-/// Returns a table with a row for each family, at the condition where the best formula in float errs most; for ours
-/// also the greatest error of all conditions.
+/// Returns a table row for each family, at the condition where the best formula in float errs most.
 inline std::vector<TableRow> table(const std::vector<Measured>& all) {
     std::vector<TableRow> rows = {{"stiff or extreme", "at", "error: float", "double", "ours", "ours at most",
                                    "missed: float", "double", "ours", "excess at most", "ns: float", "double",
