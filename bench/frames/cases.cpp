@@ -37,8 +37,7 @@ Camera look(const std::string& name, glm::dvec3 from, glm::dvec3 to, glm::dvec3 
     return camera;
 }
 
-// Returns the distance from a point straight up (or down, if `up` is -1) to the first triangle; infinity if there is
-// none.
+// Returns the distance straight up (`up` is 1) or down (-1) to the first triangle; infinity if there is none.
 double room(const std::vector<Vertex>& triangles, const glm::dvec3& from, double up) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < triangles.size(); i += 3) {

@@ -29,8 +29,7 @@ namespace {
 
 using namespace lightbin;
 
-/// A struct of a user's program. Its members have another order than lightbin's, and a byte before them leaves none
-/// aligned.
+/// A user's struct: members in another order than lightbin's, behind a byte, so that none is aligned.
 #pragma pack(push, 1)
 struct Lamp {
     char kind;

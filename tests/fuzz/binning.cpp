@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes a camera, lights, Z bounds (depth limits of tiles) or a depth buffer from a fuzzer's bytes; lists of every
-// instruction set are compared with exact arithmetic.
+// Bytes make a camera, lights and depths of tiles; every instruction set's lists are checked by exact arithmetic.
 #include "../oracle/judge.hpp"
 #include "bytes.hpp"
 

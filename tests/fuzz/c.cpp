@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calls the C API as a fuzzer's bytes say, with any numbers, pointers that may be null, arrays and structs of exactly
-// the stated size, and memory that may run out. Each call fails with a sentence or makes something sound; nothing
-// leaks.
+// Calls the C API as a fuzzer's bytes say: any numbers, null pointers, arrays and structs of exactly the stated size,
+// memory that runs out. Each call fails with a sentence or makes something sound; nothing leaks.
 #define LIGHTBIN_NO_SIMD  // of the kernels the scalar ones are enough
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>

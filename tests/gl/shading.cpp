@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pictures of tiled_forward equal those of every light in every fragment, also where surfaces hide each other
-// within pixels.
+// The pictures of tiled_forward equal those of every light in every fragment, however surfaces overlap within pixels.
 #include "gl_context.hpp"
 #include "renderer.hpp"
 

@@ -15,8 +15,7 @@ namespace {
 
 using namespace lightbin;
 
-/// Returns lights larger than those of test::random_lights(), so that fewer of them make the library choose the same
-/// kernels.
+/// Larger lights than test::random_lights(), so that fewer make the library choose the same kernels.
 std::vector<glm::vec4> large_lights(std::size_t count) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
