@@ -235,8 +235,7 @@ public:
 
 private:
     /// Columns (axis 0) or rows of tiles, and the margin that rounding explains, in pixels. The library states an error
-    /// of 16 u (|O| + tiles) tiles, with u = 2^-24 and O the image's offset in tiles, and adds the same as a margin:
-    /// twice that.
+    /// of 16 u (|O| + tiles) tiles (u = 2^-24, O: the image's offset), and adds as much: twice that.
     struct Side {
         std::vector<Slab> slabs, grown;
         Rational offset_in_tiles;  ///< |offset| + number of tiles + 1

@@ -87,8 +87,7 @@ public:
         in_rectangle_ = std::move(in);
     }
 
-    /// Proves that a light does not meet columns and rows whose masks lack it, nor any tile at the depths of a z-bin
-    /// without it.
+    /// Proves that lights do not meet columns and rows whose masks lack them, nor tiles in z-bins that lack them.
     void judge_masks(bool with_bins) {
         using lightbin::Isa, lightbin::MaskBinner;
         Random random(scene_.lights.size());

@@ -209,8 +209,7 @@ inline Light axis_tangent(const Aim& aim, Random& random) {
     return nudged(aim.light(c[0], c[1], d, r), random);
 }
 
-/// Returns a sphere at z = r (1 + 2^-k), almost as near as the plane through the eye, so that its image is almost
-/// infinite.
+/// Returns a sphere at z = r (1 + 2^-k): it almost reaches the eye's plane, so its image is almost infinite.
 inline Light eye_plane(const Aim& aim, Random& random) {
     const double r = aim.unit * random.power_of_two(-2, 20), d = r * (1 + std::exp2(-random.integer(1, 30)));
     return nudged(
