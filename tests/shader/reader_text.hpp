@@ -89,8 +89,7 @@ private:
         return translate(glsl, dialect_.hlsl, dialect_.es);
     }
 
-    /// Returns the lines above a snippet. Where a heat map is wanted the logarithm is made inaccurate, as a device's
-    /// may be.
+    /// Returns the lines above a snippet. For heat maps the logarithm is made inaccurate, as a device's may be.
     std::string head() const {
         std::string text = version_line(options_.language);
         if (multiview_ && !dialect_.hlsl)

@@ -56,8 +56,8 @@ std::vector<glm::vec4> lights_before(const View& view, std::size_t count, std::u
     return lights;
 }
 
-/// Returns the pixels that a sphere's image covers, found by trying points of its disc beyond the near plane in each
-/// image axis, and those where the near plane cuts the disc.
+/// Returns the size of a sphere's image in pixels. Each image axis shows a disc: points of its edge beyond the near
+/// plane are tried, and where edge and near plane meet. Without perspective nothing is cut off.
 double sampled_pixels(const View& view, const glm::dvec4& sphere) {
     const double forward = view.image_point({0, 0, 1}).depth, z = forward * sphere.z, r = sphere.w,
                  near_z = view.orthographic() ? -HUGE_VAL : view.near_depth();
@@ -241,8 +241,8 @@ TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of
                 const double r = spot.radius, cosine = spot.cos_half_angle, z = forward * spot.z;
                 const double aside = std::hypot(spot.axis_x, spot.axis_y), ahead = forward * spot.axis_z;
                 const double length = std::hypot(aside, ahead), sine = std::sqrt(1 - cosine * cosine);
-                // How far the spot reaches from its apex towards the eye (-1) or away from it: to its sphere, its rim
-                // or nowhere.
+                // How far the spot reaches from its apex to (-1) or from (1) the eye: to its sphere, its rim or
+                // nowhere.
                 const auto reach = [&](double towards) {
                     const double along = towards * ahead / length;
                     if (cosine < 0 || along >= cosine) return r;

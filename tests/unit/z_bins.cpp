@@ -1,5 +1,4 @@
-// Z-bins (depth intervals with a range of lights): compares lists with those without z-bins, and tests every light in
-// every bin.
+// Z-bins (depth intervals with a range of lights): lists against those without, every light tried in every bin.
 #include "scene.hpp"
 
 #include <limits>
