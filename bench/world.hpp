@@ -49,7 +49,7 @@ inline std::vector<UserLight> structs_of(const Lights& lights) {
 /// The same lights in view space and in world space. Each frame has its own arrays, so that none is in the cache more
 /// often than another.
 struct WorldFrame {
-    Frame view;  ///< moved by that matrix, and rounded to the nearest float
+    Frame view;  ///< the lights in view space, rounded to float
     glm::mat4 view_matrix;
     Lights lights;
     std::vector<UserLight> view_structs, structs;  ///< in view and in world space; may be empty

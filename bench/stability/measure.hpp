@@ -30,7 +30,7 @@ namespace stability {
 /// Results of one formula in one precision under one condition. Errors are in pixels, or for depth in slices.
 struct Tally {
     std::string formula, precision;
-    std::uint64_t lights = 0;       ///< lights it works for: most formulas allow none that the near plane cuts
+    std::uint64_t lights = 0;       ///< lights tested: most formulas allow none that the near plane cuts
     double error = 0;               ///< largest error of a bound within the picture
     std::uint64_t exact = 0;        ///< tiles, or slices, that lights truly need
     std::uint64_t missed_bare = 0;  ///< of those, missed without a margin

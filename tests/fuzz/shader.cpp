@@ -86,7 +86,7 @@ struct Question {
     std::string prefix;
     bool push_constants = false;
     std::vector<ShaderSlot> slots;  ///< all slots in the options, also those that the text does not use
-    std::set<ErrorCode> reasons;    ///< for which it may be refused
+    std::set<ErrorCode> reasons;    ///< errors with which the options may be refused
     std::vector<Wanted> wanted;     ///< in the order of the text, without the constants at its beginning
     std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
