@@ -12,7 +12,7 @@ class Arguments {
 public:
     Arguments(int argc, char** argv) : words_(argv + 1, argv + argc) {}
 
-    /// Whether an option is there. Takes it away.
+    /// Returns whether an option was on the command line, and takes it away.
     bool take(std::string_view option) { return std::erase(words_, option) > 0; }
 
     /// The value of an option, which stands behind its "=" or is the next word; or `otherwise`. Takes both away.

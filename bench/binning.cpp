@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A whole build, lights in to lists out, against the flat baseline measured in turns in the same run, on rotating light
-// sets; with clusters and z-bins; from world space and structs against view-space vec4s; spots against spheres, boxes
-// against both; and what threads gain. Writes binning.csv.
+// Times a whole build, lights in to lists out, against a plain loop (flat.hpp) that takes turns with it: with clusters
+// and z-bins, from world space and from structs, of spots and boxes against spheres, and on several threads. Writes
+// binning.csv.
 #include "arguments.hpp"
 #include "boxes_sets.hpp"
 #include "builds.hpp"
@@ -39,12 +39,12 @@ using lightbin::Isa;
 using lightbin::Options;
 using lightbin::Slicing;
 
-/// What one case takes on one instruction set, as a ratio to something that was timed in turns with it.
+/// The time of one case on one instruction set, as a ratio to the time of other work that was timed in turns with it.
 struct Timed {
     std::string name, tier;
-    std::string to;  ///< what the ratio is to
-    double ratio;    ///< of the medians; where it is to one thread, how many times as fast several are
-    double spread;   ///< from the 10th to the 90th percentile of the turns' own ratios
+    std::string to;  ///< name of the work that the ratio is to
+    double ratio;    ///< of median times; for threads: how many times as fast as one thread
+    double spread;   ///< from the 10th to the 90th percentile of the ratios of single turns
     double ns_per_light = 0, entries_per_light = 0;
 };
 
@@ -60,7 +60,7 @@ std::vector<Case> cases;
 
 template <class AnyFrame> using Make = std::function<std::vector<AnyFrame>()>;
 
-/// Light sets that are met in turn. They are made where they are asked for.
+/// Frames with different lights, built in turns. They are made when they are first asked for.
 template <class AnyFrame> struct Set {
     std::string name;
     std::size_t lights;
@@ -68,7 +68,7 @@ template <class AnyFrame> struct Set {
 
     std::string full_name() const { return name + "/" + std::to_string(lights); }
 
-    /// What `make` makes, kept while those who follow ask for the same.
+    /// Returns the frames, which `make` makes; they are kept until another set is asked for.
     const std::vector<AnyFrame>& frames() const {
         static std::vector<AnyFrame> frames;
         static std::string kept;
@@ -81,7 +81,7 @@ template <class AnyFrame> struct Set {
     }
 };
 
-/// Returns a set of frames with `count` lights each, which `make` makes of a seed.
+/// Returns a set of frames with `count` lights each; make(seed) makes the lights of one frame.
 template <class MakeLights>
 Set<Frame> made_set(const std::string& name, std::size_t count, MakeLights make, Lens lens = {}) {
     return {
@@ -100,21 +100,21 @@ void add_result(const std::string& name, Isa isa, const char* to, const Turns& t
                        1e9 * turns.seconds_a_frame(of) / count, turns.made_a_frame(of) / count});
 }
 
-/// Stops the run where two works that ought to make the same lists make lists of another length.
+/// Ends the program if two builds that must make the same lists made lists of different total length.
 void check_same_length(const std::string& name, std::size_t ours, std::size_t theirs) {
     if (std::abs(double(ours) - double(theirs)) > 0.01 * double(theirs) + 16)
         throw std::runtime_error(name +
                                  text(": %zu entries, and %zu of what it is held against", ours, theirs));
 }
 
-/// Adds a case for each instruction set that this machine has, from `least` on: time(name, isa).
+/// Adds a case for each instruction set of this machine, from `least` on; time(name, isa) does the timing.
 template <class Time> void add_cases(const std::string& name, Time time, Isa least = Isa::scalar) {
     for (const Isa isa : {Isa::scalar, Isa::simd128, Isa::avx2, Isa::avx512})
         if (isa >= least && lightbin::machine_isa(isa) == isa)
             cases.push_back({name + "/" + to_string(isa), [=] { time(name, isa); }});
 }
 
-/// The processor time that this thread takes for some work.
+/// Returns the processor time in seconds that this thread needs for some work.
 template <class Body> double own_seconds(Body body) {
     const auto now = [] {
         std::timespec time;
@@ -126,7 +126,7 @@ template <class Body> double own_seconds(Body body) {
     return now() - start;
 }
 
-/// Runs parts on threads, and adds up the processor time of the longest part of each step.
+/// Runs a step's parts one by one and adds up the processor time of each step's longest part.
 struct Steps {
     explicit Steps(std::size_t threads) : pool(threads) {}
 
@@ -140,7 +140,7 @@ struct Steps {
     }
 };
 
-/// The views of frames. Those that frames have in common are one, as a program would have it: it stays in the cache.
+/// The views of frames. Equal views are stored once, so that a view stays in the cache as in a program.
 struct FrameViews {
     FrameViews(const std::vector<Frame>& frames, int tile_size) : first(frames.data()) {
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -161,8 +161,8 @@ struct FrameViews {
     std::vector<std::size_t> view_of;
 };
 
-/// A build against the baseline, which has no Z bounds; against clearing the tile table, and of a million lights
-/// against reading them.
+/// Times a build against the plain loop, which tests no depths; also against clearing the table of tiles and, for a
+/// million lights, against reading the lights.
 template <Options options> void time_build(const std::string& name, Isa isa, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const FrameViews views(frames, tile_size);
@@ -237,7 +237,7 @@ template <Options options> void time_slices(const std::string& name, Isa isa, co
                0, 1, set.lights);
 }
 
-/// Masks of columns and rows against the baseline and the lists, and with z-bins against those without.
+/// Times masks of columns and rows against the plain loop and lists, and masks with z-bins against those without.
 void time_masks(const std::string& name, Isa isa, const Set<Frame>& set, int tile_size) {
     const std::vector<Frame>& frames = set.frames();
     const lightbin::View view = Lens().view(tile_size);
@@ -260,8 +260,8 @@ void time_masks(const std::string& name, Isa isa, const Set<Frame>& set, int til
     add_result(name + "/z_bins", isa, "masks", turns, 1, 0, set.lights);
 }
 
-/// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so
-/// that none finds its lights where another one left them in the cache.
+/// Times builds from each form of the lights against view-space vec4s, and against a hand-written loop. Within a turn
+/// each takes another frame, so that none finds its lights in the cache.
 void time_sources(const std::string& name, Isa isa, const Set<WorldFrame>& set) {
     const std::vector<WorldFrame>& frames = set.frames();
     SourceBuilds builds(frames[0].view.lens, 32, isa);
@@ -281,7 +281,7 @@ void time_sources(const std::string& name, Isa isa, const Set<WorldFrame>& set) 
     add(world_vec4s, loop_vec4s);
 }
 
-/// Spots or boxes against as many spheres whose lists are as long, and boxes against such spots.
+/// Times spots or boxes against spheres scaled until their lists are as long, and boxes against such spots.
 template <Options options, class Light>
 void time_kind(const std::string& name, Isa isa, const Set<KindFrame<Light>>& set) {
     using OneFrame = KindFrame<Light>;
@@ -317,7 +317,7 @@ template <Options options = Options{}> void add_threads(const Set<Frame>& set) {
     }
 }
 
-/// All that is timed of one of the made sets. median 0: the near set.
+/// Adds all cases of one generated light set. `median` is the median radius; 0 stands for the set around the eye.
 void add_set(const std::string& name, float median, bool quick) {
     const auto make = [median](std::size_t count, std::uint32_t seed) {
         return median > 0 ? field(count, median, seed) : near_eye(count, seed);
@@ -386,7 +386,7 @@ void add_sources(const Set<WorldFrame>& set) {
               [=](const std::string& name, Isa isa) { time_sources(name, isa, set); });
 }
 
-/// How to make the frame of a seed of a set of spots or boxes.
+/// A set of spots or boxes, and the function that makes one of its frames from a seed.
 template <class Light> struct KindSet {
     std::string name;
     std::size_t lights;
@@ -437,7 +437,7 @@ void add_boxes(const char* name, float median, std::span<const BoxFamily> famili
     }
 }
 
-/// Lights 99 % of which are out of view: behind the eye, or to the side.
+/// Returns lights of which 99 % are out of view: behind the eye, or to the side.
 Lights away(std::size_t count, std::uint32_t seed) {
     Lights lights = field(count, field4_median, seed);
     for (std::size_t i = 0; i < count; ++i)
@@ -445,7 +445,7 @@ Lights away(std::size_t count, std::uint32_t seed) {
     return lights;
 }
 
-/// A million small lights against ten thousand, a light.
+/// Adds cases that compare the time for each light among a million small lights and among ten thousand.
 void add_scale() {
     const auto of = [](const Timed& row, const char* number) {
         return row.to == "flat" && row.name == std::string("field4/") + number + "/32px/none";
@@ -467,7 +467,7 @@ void write_csv() {
     std::fclose(csv);
 }
 
-/// The rows whose names the expression matches.
+/// Prints the results whose names match the regular expression.
 void print_rows(const std::string& filter) {
     const std::regex wanted(filter);
     std::vector<TableRow> table = {{"case", "tier", "to", "ratio", "spread"}};

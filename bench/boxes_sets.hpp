@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The synthetic boxes, by shape, and sets of them that the camera of sets.hpp sees.
+// Generated boxes of several shapes, and sets of them in front of the camera of sets.hpp.
 #pragma once
 
 #include "dice.hpp"
@@ -20,8 +20,8 @@
 
 using Boxes = std::vector<lightbin::Box>;
 
-/// Boxes of one shape around a middle, whose longest half axis or radius is `size` (in rooms 4 times that). The columns
-/// of `frame` are their directions.
+/// Makes boxes of one shape around a centre. `size` is their longest half axis or radius (for rooms a quarter of it);
+/// the columns of `frame` are the directions of their axes.
 struct BoxFamily {
     const char* name;
     lightbin::Box (*one)(const glm::vec3& middle, float size, const glm::mat3& frame, Dice& dice);
@@ -72,15 +72,14 @@ inline const std::vector<BoxFamily>& box_families() {
     return families;
 }
 
-/// A box of a family with the middle and the size of a sphere, turned in any direction.
+/// Returns a box of a shape with the centre and the size of a sphere, turned in a random direction.
 inline lightbin::Box box_in(const glm::vec4& sphere, const BoxFamily& family, Dice& dice) {
     const glm::vec3 first = any_direction(dice),
                     second = glm::normalize(glm::cross(first, any_direction(dice)));
     return family.one(glm::vec3(sphere), sphere.w, {first, second, glm::cross(first, second)}, dice);
 }
 
-/// The families of which box_field() makes sets to time: whole boxes, from cubes to cards and rods, and clipped
-/// spheres.
+/// The shapes that box_field() makes timed sets of: boxes from cubes to cards and rods, and spheres cut by a box.
 inline std::span<const BoxFamily> timed_boxes() {
     return std::span(box_families()).first(5);
 }
@@ -88,7 +87,7 @@ inline std::span<const BoxFamily> timed_clipped() {
     return std::span(box_families()).subspan(6, 2);
 }
 
-/// The field's spheres as middles and sizes of boxes, of each family in turn.
+/// Returns boxes with the centres and sizes of the spheres of field() in sets.hpp, the shapes taking turns.
 inline Boxes box_field(std::size_t count, float median_size, std::uint32_t seed,
                        std::span<const BoxFamily> families) {
     Dice dice(seed);
@@ -98,5 +97,5 @@ inline Boxes box_field(std::size_t count, float median_size, std::uint32_t seed,
     return boxes;
 }
 
-/// Medians at which a box and a clipped sphere in view meet 20 tiles of 32 pixels in the mean.
+/// Median sizes at which a box, or a sphere cut by a box, covers 20 tiles of 32 pixels on average if it is in view.
 inline constexpr float boxes20_median = 6.1f, clipped20_median = 7.5f;

@@ -6,7 +6,7 @@
 
 #include <string>
 
-/// The name between the prefix `lightbin_` and `_block`: that of the buffer in the options of the text.
+/// Returns a binding's name without the prefix `lightbin_` and the ending `_block`.
 inline std::string buffer_of(const lightbin::ShaderBinding& binding) {
     std::string name = binding.name;
     const std::string prefix = "lightbin_", end = "_block";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Build: a Binner of any options, with Z bounds and slices that fit all generated sets of lights.
+// Build: a Binner of any options, with Z bounds and depth slices that fit all generated sets of lights.
 #pragma once
 
 #include "lens.hpp"
@@ -19,7 +19,7 @@ public:
         : made_(tile_size),
           slices_(options.slicing == lightbin::Slicing::clusters ? cluster_slices() : z_bin_slices()), binner_(isa) {}
 
-    /// The grid of some lights, valid until the next call.
+    /// Returns the light grid of some lights, valid until the next call.
     template <class AnyLights>
     auto grid(const lightbin::View& view, const AnyLights& lights, const lightbin::Parallel& threads = {}) {
         return *binner_.bin(view, lights, lightbin::inputs_for<options>(made_.bounds, slices_), threads);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A grid of any options, as the reports read it.
+// What a build made, in one form for all options: lists, z-bins or masks.
 #pragma once
 
 #include "raster.hpp"
@@ -20,18 +20,18 @@
 #include <variant>
 #include <vector>
 
-/// What a build gave, in its Binner's memory.
+/// What a build made. The memory is the Binner's.
 struct Built {
     std::span<const lightbin::ListRange> ranges;
-    std::size_t bytes;  ///< of all that a shader reads, but the lights: tiles or cells, ids, bins
+    std::size_t bytes;  ///< size of all that a shader reads except the lights: tiles or cells, ids, bins
     const lightbin::Slices* slices = nullptr;       ///< with slices
-    std::span<const std::uint32_t> ids = {};        ///< where they are of 32 bits; with z-bins ranks
+    std::span<const std::uint32_t> ids = {};        ///< 32-bit ids, or with z-bins ranks in depth
     std::span<const lightbin::BinRange> bins = {};  ///< with z-bins
-    std::span<const std::uint32_t> order = {};      ///< with z-bins, the light of each rank
-    std::optional<lightbin::LightMasks> masks = {};  ///< in place of all that, but for bytes and slices
+    std::span<const std::uint32_t> order = {};      ///< with z-bins: the light of each rank in depth
+    std::optional<lightbin::LightMasks> masks = {};  ///< without lists
 };
 
-/// Builds with the slices that the view has for them.
+/// Builds lists with the depth slices that the view has for these options.
 template <lightbin::Options options, class Any>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const std::vector<Any>& lights,
             const lightbin::ZBounds& bounds) {
@@ -55,7 +55,7 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const Ligh
     return std::visit([&](const auto& any) { return build(binner, view, any, bounds); }, lights);
 }
 
-/// What masks say as lists of ranks, in memory of its own.
+/// Lists of lights made from masks, as ranks in order of depth.
 class MaskLists {
 public:
     explicit MaskLists(const Built& of) : built_(of) {
@@ -87,7 +87,7 @@ private:
 
 using BuildLists = std::function<Built(const TiledView&, const LightSet&)>;
 
-/// Builds with a Binner of its own, and the view's Z bounds where the options take them.
+/// Returns a function that builds with its own Binner, and with the view's Z bounds if the options test depths.
 template <lightbin::Options options> BuildLists builder() {
     const auto binner = std::make_shared<lightbin::Binner<options>>();
     return [=](const TiledView& view, const LightSet& lights) {

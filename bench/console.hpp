@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the programs say: on stderr where they are, then a short table, a verdict, and where all rows lie.
+// Console output of the programs: progress on stderr, then a table, a conclusion, and the names of the files written.
 #pragma once
 
 #include "measure.hpp"
@@ -19,7 +19,7 @@ template <class... Values> std::string text(const char* format, Values... values
     return buffer;
 }
 
-/// A line that the next one replaces and that is gone in the end; where stderr is no terminal, one in ten seconds.
+/// A progress line that the next one replaces, gone at the end; where stderr is no terminal, one in ten seconds.
 class Progress {
 public:
     ~Progress() {
@@ -38,7 +38,7 @@ private:
 
 using TableRow = std::vector<std::string>;
 
-/// Each column as wide as its widest cell.
+/// Prints a table in which each column is as wide as its widest text.
 inline void print_table(const std::vector<TableRow>& rows) {
     std::vector<std::size_t> widths(rows[0].size());
     for (const TableRow& row : rows)
@@ -52,7 +52,7 @@ inline void print_table(const std::vector<TableRow>& rows) {
     }
 }
 
-/// Ends a program's words. `files` are those that it wrote to the current folder.
+/// Prints the conclusion at a program's end. `files` are the files that it wrote to the current folder.
 inline void conclude(const std::vector<std::string>& verdict, const std::vector<std::string>& files) {
     std::puts("");
     for (const std::string& line : verdict)

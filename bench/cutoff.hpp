@@ -24,11 +24,11 @@
 #include <variant>
 #include <vector>
 
-/// Of a picture to the reference, white = 1.
+/// How a picture differs from the reference, in parts of white.
 struct Difference {
     double rmse = 0;
-    double lost = 0;           ///< the mean: the picture's missing light
-    double rmse_restored = 0;  ///< after adding that mean to every pixel, as an ambient term can
+    double lost = 0;           ///< mean of the light that the picture lacks
+    double rmse_restored = 0;  ///< error once that mean is added to every pixel, like an ambient term
 };
 
 class CutoffStudy {
@@ -46,10 +46,10 @@ public:
         white_ = sorted.empty() ? 0 : static_cast<double>(sorted[sorted.size() * 95 / 100]);
     }
 
-    /// 0 where no light reaches the picture: then there is nothing to study.
+    /// Returns the brightness that counts as white; 0 if no light reaches the picture.
     double white() const { return white_; }
 
-    /// The lights, ended where they still give this part of white.
+    /// Returns the lights with ranges that end where they give this part of white.
     LightSet ended(LightSet lights, double part) const {
         const auto range = [&](float own) {
             return lightbin::light_range(own * own, static_cast<float>(part * white_));
@@ -63,7 +63,7 @@ public:
         return lights;
     }
 
-    /// Of the picture of lights that end there.
+    /// Compares the picture of lights that end where they give this part of white with the reference.
     Difference difference(double part) {
         const LightSet lights = ended(lights_, part);
         const Spots spots = spots_of(lights);
@@ -87,7 +87,7 @@ public:
     }
 
 private:
-    /// What a picture's drawn pixels are lit from.
+    /// Positions and normals of the drawn pixels.
     struct Surface {
         std::vector<int> pixel;
         std::vector<glm::vec3> point, normal;
@@ -110,7 +110,7 @@ private:
         std::size_t size() const { return pixel.size(); }
     };
 
-    /// What one light gives pixel i of the surface.
+    /// Returns the light that pixel i gets from one light without a range.
     float endless_light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
         const glm::vec3 d = glm::vec3(light.x, light.y, light.z) - surface_.point[i];
         const float squared = std::max(glm::dot(d, d), 1e-4f), distance = std::sqrt(squared);

@@ -26,7 +26,7 @@ namespace {
 
 using lightbin::Slicing;
 
-/// What tiles or clusters test of a light's depth.
+/// What lists test of a light's depth: nothing, its interval of depth, or the box around the cell.
 enum class Method { none, interval, box };
 constexpr Method methods[] = {Method::none, Method::interval, Method::box};
 
@@ -50,7 +50,7 @@ struct Row {
     }
     double excess() const { return part(entries, exact) - 1; }
 
-    /// Adds what is true of a grid's cells, whose lists are list_of(tile).
+    /// Counts misses and excess entries in a grid's cells; list_of(tile) returns the list of a cell.
     template <class ListOf> void add(const ExactPairs& truth, ListOf list_of) {
         verdicts += truth.verdicts, by_rationals += truth.by_rationals, open += truth.open;
         const bool clusters = slicing == Slicing::clusters;
@@ -108,7 +108,7 @@ std::vector<Row> rows_of(const Case& scene, int tile_size) {
     return rows;
 }
 
-/// Of a field of lights, a row with the slab of each slice and one with the box of each cell.
+/// Measures clusters of one light set: a row without, and one with, the box test of each cell.
 template <bool depth_test>
 Row row_of_clusters(const std::string& name, const Lights& lights, ExactDecider& decider) {
     constexpr int tile_size = 64;

@@ -28,10 +28,10 @@
 #include <stdexcept>
 #include <vector>
 
-/// What may be true of a tile and a light.
+/// Facts about a tile and a light, as bits.
 enum Fact : std::uint32_t {
     in_pyramid = 1,  ///< the light meets the tile's cell without Z bounds
-    in_cell = 2,     ///< ... between the tile's minimum and maximum depth: the exact set
+    in_cell = 2,     ///< the light meets the tile's cell between its minimum and maximum depth
 };
 
 /// A light that meets a tile.
@@ -42,12 +42,12 @@ struct Pair {
 
 struct ExactPairs {
     std::vector<std::vector<Pair>> tiles;  ///< ids ascend
-    std::uint64_t verdicts = 0;            ///< pairs of a tile and a light decided: all there are
-    std::uint64_t by_rationals = 0;        ///< questions that double precision left open
-    std::uint64_t open = 0;  ///< of these, about spots, such as no certificate was found for: taken for "no"
+    std::uint64_t verdicts = 0;            ///< pairs of a tile and a light that were decided: all pairs
+    std::uint64_t by_rationals = 0;        ///< questions that double precision could not decide
+    std::uint64_t open = 0;  ///< of these, about spots, those without a proof: counted as "do not meet"
 };
 
-/// Calls visit(pair, whether the tile's list has its light) for each of a tile's pairs. The list's ids ascend.
+/// Calls visit(pair, whether the tile's list contains the light) for each pair of a tile. The list's ids must ascend.
 template <class Visit>
 void for_each_listed(std::span<const Pair> pairs, std::span<const std::uint32_t> list, Visit visit) {
     auto id = list.begin();
@@ -58,7 +58,7 @@ void for_each_listed(std::span<const Pair> pairs, std::span<const std::uint32_t>
     }
 }
 
-/// A camera of the exact decider with a projection in floats.
+/// Returns a camera for the exact arithmetic, with a projection given in floats.
 inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::ImageSize screen, int tile_size) {
     oracle::Camera camera;
     for (int column = 0; column < 4; ++column)
@@ -70,7 +70,7 @@ inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::ImageSi
 
 class ExactDecider {
 public:
-    /// A symmetric perspective matrix; tiles from the lower left corner.
+    /// The projection must be a symmetric perspective; tiles are counted from the lower left corner.
     ExactDecider(const glm::mat4& projection, lightbin::ImageSize screen, int tile_size)
         : truth_(camera_with(projection, screen, tile_size)) {
         using oracle::nearly;
@@ -82,7 +82,7 @@ public:
                 {nearly(truth_.rows(y, y + 1).low.slope), nearly(truth_.rows(y, y + 1).high.slope)});
     }
 
-    /// Decides every pair of a tile and a light, none of them bad.
+    /// Decides for every tile and every light whether they meet. No light may be bad input.
     template <class AnyLights> ExactPairs pairs(const AnyLights& lights, const lightbin::ZBounds& bounds) {
         const std::size_t tiles = tile_at(0, truth_.oracle.tiles_y());
         ExactPairs result = {std::vector<std::vector<Pair>>(tiles), tiles * lights.size()};
@@ -96,12 +96,12 @@ public:
 
 private:
     using Ball = oracle::FlatBall;
-    using Range = oracle::FlatDepths;  ///< the ends are floats, so exact, or those of the view
+    using Range = oracle::FlatDepths;  ///< ends are floats, and so exact, or the planes of the view
     using Rational = oracle::Rational;
     struct Span {
         int first, end;
     };
-    /// A ball in rationals, once they are asked for.
+    /// A ball in rational numbers, computed when it is first needed.
     struct Exactly {
         const Ball& ball;
         oracle::CameraBall operator()() const {
@@ -109,8 +109,7 @@ private:
         }
     };
 
-    /// The sphere of a light. A spot or box lies within its sphere, so what no sphere reaches it does not reach,
-    /// either.
+    /// The sphere that a light lies within: where it does not reach, the spot or box does not, either.
     struct Subject {
         Ball ball;
         template <class Light>
@@ -140,7 +139,7 @@ private:
         oracle::ExactSpot exact;
         oracle::FlatSpot flat;
         std::vector<SpotSubject>
-            halves;  ///< of a half angle above 90 degrees: half balls that fill it but for slivers
+            halves;  ///< half balls that together almost fill a spot wider than 90 degrees
     };
     struct BoxSubject : Subject {
         BoxSubject(const oracle::Oracle& oracle, const oracle::BoxLight& box)
@@ -149,7 +148,7 @@ private:
               })) {}
         oracle::BoxLight light;
         oracle::FlatBox flat;
-        mutable std::optional<oracle::ExactBox> exact;  ///< once it is asked for: its hull takes a while
+        mutable std::optional<oracle::ExactBox> exact;  ///< computed when first needed
     };
     Subject subject(const lightbin::Sphere& ball) const { return Subject(ball); }
     Subject subject(const glm::vec4& ball) const {
@@ -163,7 +162,7 @@ private:
         return {truth_.oracle, light};
     }
 
-    /// The columns (rows) of tiles whose wedges the ball meets. They are neighbours, as the ball is convex.
+    /// Returns the columns (or rows) of tiles whose wedges of space the ball meets: without holes, as it is convex.
     template <class Meets> static Span met(int count, Meets meets) {
         Span span = {0, count};
         while (span.first < span.end && !meets(span.first))
@@ -177,7 +176,7 @@ private:
         return static_cast<std::size_t>(y * truth_.oracle.tiles_x() + x);
     }
 
-    /// In a row of tiles those that it meets are neighbours, as it is convex.
+    /// Visits the tiles of a row that the light meets. They are neighbours, because the light is convex.
     template <class AnySubject>
     void add(std::uint32_t id, const AnySubject& light, const lightbin::ZBounds& bounds, ExactPairs& result) {
         const Exactly exactly{light.ball};
@@ -204,8 +203,8 @@ private:
         return truth_.meets(
             {x, x + 1, y, y + 1}, range, light.ball, [&] { return exact(range); }, Exactly{light.ball});
     }
-    /// Whether the spot does, by double precision, or where that has no answer, and now and then as a check, by a
-    /// certificate.
+    /// Returns whether the spot meets the cell of tile (x, y): by double precision or, where that cannot tell and now
+    /// and then as a check, by an exact proof.
     bool meets(int x, int y, const Range& range, const SpotSubject& spot) {
         if (spot.exact.ball.all) return meets(x, y, range, static_cast<const Subject&>(spot));
         if (!spot.halves.empty())
@@ -258,7 +257,7 @@ private:
     std::uint64_t spot_questions_ = 0, spots_by_rationals_ = 0, open_ = 0;
 };
 
-/// Every pair of a cell of this slice and a light, as of tiles with the slice's boundaries for Z bounds.
+/// Decides every pair of a light and a cell of this depth slice; its boundaries serve as the Z bounds of every tile.
 template <class AnyLights>
 ExactPairs pairs_in(ExactDecider& decider, const lightbin::View& view, const lightbin::Slices& slices,
                     int slice, const AnyLights& lights) {

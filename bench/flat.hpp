@@ -19,9 +19,9 @@ struct FlatView {
     double scale, near_depth, far_depth;
 };
 
-/// Flat two-pass binning, scalar. Per light the tangent rectangle of what lies beyond the near plane,
-/// counting into the tile table in the same pass; a prefix sum; a fill pass over the stored rectangles;
-/// 32-bit ids; vectors reused. With Z bounds every pair is tested in both passes.
+/// The plain loop: for each light it finds the rectangle of tiles and counts it in the table of tiles; a prefix sum;
+/// then a second pass writes 32-bit ids. Vectors are reused. If tiles have Z bounds (minimum and maximum depth), both
+/// passes test them.
 template <class Real> class Flat {
 public:
     struct Rect {
@@ -29,8 +29,8 @@ public:
         Real z_min, z_max;
     };
 
-    /// Not inlined, and the view a copy that no store can change: as quick as compilers make it, and the same text for
-    /// all that is measured against it.
+    /// Not inlined, and with a copy of the view, which no store can change: so compilers make it fast, and the same
+    /// code everywhere.
     template <bool with_depth>
     [[gnu::noinline]] void build(const FlatView view, std::span<const glm::vec4> lights,
                                  const float* tile_min, const float* tile_max) {
@@ -101,9 +101,8 @@ private:
         return rect;
     }
 
-    /// Largest slope of the part beyond the near plane of a disc (c, z, r) that the plane cuts at c - h and
-    /// c + h: at the tangent point if that is beyond the plane too, else at the corner (Mara and McGuire,
-    /// JCGT 2(2), 2013).
+    /// Largest slope of the part of a disc (c, z, r) beyond the near plane, which cuts it at c - h and c + h: at the
+    /// tangent point if that is beyond the plane, else at the corner (Mara and McGuire, JCGT 2(2), 2013).
     static Real clipped_slope(Real c, Real z, Real r, Real h, Real near_depth) {
         if (near_depth * (z - near_depth) <= h * (c + h)) return (c + h) / near_depth;
         const Real t = std::sqrt(std::max(c * c + z * z - r * r, Real(0)));

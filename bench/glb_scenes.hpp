@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The views of a glTF scene as bench scenes.
+// Makes benchmark scenes from the cameras of a glTF file.
 #pragma once
 
 #include "scenes.hpp"
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-/// The points that a light of a file reaches; of 90 degrees and more, its whole sphere.
+/// Returns a spot with the points that a file's light reaches; from 90 degrees on, its whole sphere.
 inline lightbin::Spot spot_of(const Light& light) {
     const glm::vec3 &at = light.position, &to = light.direction;
     if (!light.spot) return lightbin::Spot::whole({at.x, at.y, at.z, light.range});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is timed: light sets that are met in turn, each seen through its own lens.
+// What is timed: frames with different lights, built in turns, each seen by a camera of its own.
 #pragma once
 
 #include "flat.hpp"
@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-/// A symmetric perspective camera's lens and picture. As it stands, that of the field sets.
+/// The lens of a symmetric perspective camera, and the size of its picture. The defaults are those of sets.hpp.
 struct Lens {
     double tan_half_height = double(tan_half_fov), near_depth = 0.1, far_depth = 1000;
     lightbin::ImageSize screen = {1920, 1080};
@@ -52,7 +52,7 @@ struct Lens {
     }
 };
 
-/// The slices of clusters and of z-bins, for lights that reach so far. As they stand, those of the field sets.
+/// Returns depth slices for clusters and z-bins, up to the depth `reach`. The default fits the lights of sets.hpp.
 inline lightbin::Slices cluster_slices(float reach = 200) {
     return *lightbin::Slices::exponential(24, reach / 40, reach);
 }
@@ -65,14 +65,14 @@ struct Frame {
     Lights lights;  ///< in view space
 };
 
-/// A set that is met again and again is learnt by the branch predictor: 48 sets or 50,000 lights, whichever
-/// is more, as far as they stay small.
+/// Returns how many different frames take turns, so that the branch predictor does not learn the lights: 48, or more if
+/// they have fewer than 50,000 lights together.
 inline std::size_t rotation(std::size_t lights) {
     if (lights > 20000) return lights > 200000 ? 1 : 4;
     return std::max<std::size_t>(48, 50000 / std::max<std::size_t>(lights, 1));
 }
 
-/// What is met in turn of a set of so many lights: make(seed) of each seed.
+/// Returns the frames that take turns if each has this many lights: make(seed) for each seed.
 template <class MakeFrame> auto frames_in_turn(std::size_t lights, MakeFrame make) {
     std::vector<decltype(make(std::uint32_t{}))> frames;
     for (std::uint32_t seed = 0; seed < rotation(lights); ++seed)
@@ -80,7 +80,7 @@ template <class MakeFrame> auto frames_in_turn(std::size_t lights, MakeFrame mak
     return frames;
 }
 
-/// The lights of a .glb file from its cameras in turn, each moved and turned a little.
+/// Returns frames with the lights of a .glb file, seen by its cameras in turn, each moved and turned a little.
 inline std::vector<Frame> scene_frames(const std::vector<BenchScene>& views, std::size_t lights) {
     return frames_in_turn(lights, [&](std::uint32_t seed) -> Frame {
         const BenchScene& view = views[seed % views.size()];
@@ -89,8 +89,7 @@ inline std::vector<Frame> scene_frames(const std::vector<BenchScene>& views, std
     });
 }
 
-/// What the field sets' lights fall on, as Lens() sees it: ground 12 below the eye, boxes on it, a wall far
-/// behind. Window depth.
+/// Returns a depth buffer for the generated lights: ground 12 below the eye, boxes on it, a wall far behind.
 inline std::vector<float> made_depth() {
     SceneBuilder world({0, 12, 0}, {0, 12, -1});
     world.quad({-500, 0, -190}, {1000, 0, 0}, {0, 500, 0});
@@ -105,7 +104,7 @@ inline std::vector<float> made_depth() {
         .depth;
 }
 
-/// Z bounds of the made depth buffer, which all field sets have in common.
+/// Each tile's least and greatest depth in the depth buffer of made_depth(), the same for all generated lights.
 struct MadeBounds {
     std::vector<float> min, max;
     lightbin::ZBounds bounds;

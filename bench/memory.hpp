@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Single passes over memory, which builds are held against.
+// Single passes over memory, to compare the times of builds with.
 #pragma once
 
 #include "sets.hpp"
@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-/// Makes compilers store a value, and all else that is reached from elsewhere, as if it were read.
+/// Makes the compiler store a value, and all memory that others can reach, as if it were read here.
 template <class Value> void keep(const Value& value) {
     __asm__ volatile("" : : "r"(&value) : "memory");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which lights reach the point that a pixel shows: the fewest light evaluations there can be, and what no list may
-// lack.
+// Which lights reach the point that a pixel shows: the least number of light evaluations, and the lights that no list
+// may lack.
 #pragma once
 
 #include "built.hpp"
@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-/// The lights as spots, so that one test does for all.
+/// Returns all lights as spots, so that one test does for both kinds.
 inline Spots spots_of(const LightSet& lights) {
     if (const Spots* const spots = std::get_if<Spots>(&lights)) return *spots;
     Spots spots;
@@ -26,8 +26,8 @@ inline Spots spots_of(const LightSet& lights) {
     return spots;
 }
 
-/// By how much a point lies within a light, in view-space units; negative outside. Of a cone not the distance to it,
-/// but of its sign.
+/// Returns how deep a point lies within a light, in view-space units; negative if outside. For the cone only the sign
+/// of the result is right.
 inline double depth_within(const lightbin::Spot& spot, const glm::dvec3& point) {
     const glm::dvec3 axis(spot.axis_x, spot.axis_y, spot.axis_z),
         d = point - glm::dvec3(spot.x, spot.y, spot.z);
@@ -37,13 +37,13 @@ inline double depth_within(const lightbin::Spot& spot, const glm::dvec3& point) 
     return std::min(in_sphere, along - static_cast<double>(spot.cos_half_angle) * distance);
 }
 
-/// Of every n-th drawn pixel both ways, by 8x8 pixels, so that one list is read many times in a row.
+/// The lights that reach every n-th drawn pixel in x and y; pixels are sorted by blocks of 8x8.
 class Needed {
 public:
     struct Pixel {
-        std::uint32_t index;    ///< in the picture
-        std::uint32_t ids_end;  ///< in ids(); they begin where those of the pixel before end
-        float view_depth;       ///< of the depth buffer's value
+        std::uint32_t index;    ///< of the pixel in the picture
+        std::uint32_t ids_end;  ///< end of its lights in ids(); they begin where the last pixel's end
+        float view_depth;       ///< computed from the depth buffer's value
     };
 
     Needed(const SeenScene& seen, const Spots& lights, int every) : lights_(lights.size()) {
@@ -94,7 +94,7 @@ private:
             for (const std::uint32_t id : candidates_) {
                 const double within = depth_within(lights[id], points_[i]);
                 evaluations_ += within >= 0;
-                // A shader rounds the point's depth: what lies on the light's surface may be read as beside it.
+                // A shader rounds the point, so that a point on the light's surface may count as inside or outside.
                 if (within > -1e-6 * points_[i].z) ids_.push_back(id);
             }
             pixels_[first + i].ids_end = static_cast<std::uint32_t>(ids_.size());
@@ -109,11 +109,11 @@ private:
     std::vector<std::uint32_t> candidates_;
 };
 
-/// What the pixels of a picture read from lists or masks, beside the lights that truly reach them.
+/// Light evaluations and words of masks that a picture's pixels read, and the lights that these lack.
 struct Reading {
-    std::uint64_t evaluations = 0, words = 0;  ///< words of masks
-    std::uint64_t misses = 0;            ///< lights that reach a pixel and are not in its list
-    std::uint32_t pixel = 0, light = 0;  ///< the last of them
+    std::uint64_t evaluations = 0, words = 0;  ///< words are those of masks
+    std::uint64_t misses = 0;            ///< lights that reach a pixel but are not in its list
+    std::uint32_t pixel = 0, light = 0;  ///< an example: the last miss
 };
 
 inline Reading read_lists(const TiledView& view, const Picture& picture, const Built& built,

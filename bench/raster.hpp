@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene's depth buffer, made on the CPU: no graphics driver is needed for the reports.
+// Draws a scene's depth buffer on the CPU, so that the reports need no graphics driver.
 #pragma once
 
 #include "scenes.hpp"
@@ -14,16 +14,16 @@
 #include <cstdint>
 #include <vector>
 
-/// What each pixel's centre sees, rows from the bottom as OpenGL has them.
+/// What the centre of each pixel shows. Rows begin at the bottom, as in OpenGL.
 struct Picture {
     lightbin::ImageSize size;
     std::vector<float> depth;             ///< window depth, 1 where nothing is drawn
-    std::vector<float> view_depth;        ///< along the viewing direction; the far plane where nothing is
-    std::vector<std::uint32_t> triangle;  ///< number in the scene, `nothing` where none is drawn
+    std::vector<float> view_depth;        ///< along the viewing direction; the far plane if nothing is drawn
+    std::vector<std::uint32_t> triangle;  ///< its number in the scene, `nothing` if none is drawn
     static constexpr std::uint32_t nothing = ~std::uint32_t{0};
 };
 
-/// Half the picture's extent at view depth 1, and the planes' depths, of a symmetric perspective matrix.
+/// Half the extent of what is seen at view depth 1, and the near and far plane, of a symmetric perspective matrix.
 struct Frustum {
     double x, y, near_depth, far_depth;
 
@@ -33,7 +33,7 @@ struct Frustum {
           far_depth(static_cast<double>(projection[3][2]) / (static_cast<double>(projection[2][2]) + 1)) {}
 };
 
-/// The view-space point of a pixel's centre.
+/// Returns the view-space point at a pixel's centre and this view depth.
 inline glm::vec3 point_at(const Frustum& frustum, lightbin::ImageSize size, int x, int y, float view_depth) {
     const double depth = static_cast<double>(view_depth);
     return glm::vec3(glm::dvec3(((x + 0.5) / size.width * 2 - 1) * frustum.x * depth,

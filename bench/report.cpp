@@ -42,7 +42,7 @@ namespace {
 bool quick = false;
 double evaluation_ns = lightbin::AdviceCosts{}.evaluation_ns;
 
-constexpr double as_good = 1.03;  ///< what is so near to the best is as good
+constexpr double as_good = 1.03;  ///< a cost up to this times the least counts as equally good
 
 struct Case {
     std::string name;
@@ -55,7 +55,7 @@ std::string words(const Way& way) {
 
 struct Result {
     Way way;
-    double bounds, build, upload, shade;  ///< milliseconds a frame
+    double bounds, build, upload, shade;  ///< milliseconds for each frame
     double total, low, high;
     double evaluations, words, ratio, kilobytes;
     std::uint64_t misses;
@@ -83,7 +83,7 @@ struct SceneReport {
     std::vector<Result> results;
     std::vector<Ending> endings;
 
-    /// The least of those that `wanted` takes, by what they cost.
+    /// Returns the result with the least cost among those that `wanted` accepts.
     template <class Wanted, class Cost = double (*)(const Result&)>
     const Result& best(Wanted wanted, Cost cost = total_of) const {
         const Result* least = nullptr;
@@ -103,7 +103,7 @@ bool without_bounds(const Way& way) {
     return ours(way) && !way.needs_bounds;
 }
 
-/// A view of a scene on all tile sizes, and what its pixels need.
+/// A view of a scene in all tile sizes, and the lights that its pixels need.
 struct PreparedView {
     SeenScene seen;
     Views tiled;
@@ -114,10 +114,10 @@ struct PreparedView {
           needed(seen, spots_of(seen.scene.light_set(0)), quick ? 3 : 1) {}
 };
 
-/// Of one way, milliseconds of the frames and sums over the views.
+/// What was measured of one method at one tile size: milliseconds of each frame, and sums over the views.
 struct Measured {
     std::vector<double> bounds, build, upload;
-    double evaluations = 0, words = 0, bytes = 0;  ///< of all sampled pixels
+    double evaluations = 0, words = 0, bytes = 0;  ///< sums over all sampled pixels
     std::uint64_t misses = 0;
 };
 
@@ -141,7 +141,7 @@ void count(const std::vector<PreparedView>& views, const Way& way, const std::st
     }
 }
 
-/// Milliseconds of copying what a shader reads.
+/// Returns the milliseconds that copying what a shader reads takes.
 double upload_ms(const Built& built) {
     static std::vector<std::byte> memory;
     memory.resize(std::max(memory.size(), built.bytes));
@@ -154,14 +154,14 @@ double upload_ms(const Built& built) {
            });
 }
 
-/// Times all in turns, each turn on another light set.
+/// Times all methods in turns, each turn with other lights.
 void time(std::vector<PreparedView>& views, const std::vector<Way>& ways, std::vector<Measured>& measured) {
     for (std::uint32_t turn = 0; turn < (quick ? 12 : 100); ++turn) {
         PreparedView& view = views[turn % views.size()];
         std::map<Form, LightSet> sets;
         std::map<int, double> bounds;
         for (std::size_t i = 0; i < ways.size(); ++i) {
-            // The first finds no light in the cache: each one in turn.
+            // The method that comes first finds no lights in the cache, so the methods take turns in being first.
             const std::size_t place = (turn + i) % ways.size();
             const Way& way = ways[place];
             Measured& times = measured[place];
@@ -192,7 +192,7 @@ std::string more(const Result& a, const Result& b) {
     return text("%+.0f %%", 100 * (a.total / b.total - 1));
 }
 
-/// The depth of the middle pixel of each 8 x 8.
+/// Returns the depth of the middle pixel of each block of 8 x 8.
 std::vector<float> sampled(const Picture& picture) {
     std::vector<float> samples;
     const auto width = static_cast<std::size_t>(picture.size.width);
@@ -204,8 +204,8 @@ std::vector<float> sampled(const Picture& picture) {
     return samples;
 }
 
-/// What advise() and advise_slices() choose together of the plans that are measured here, too, told of the first view its
-/// Z bounds and the depth of one pixel in 64; and what the choice takes over the best method.
+/// Returns what advise() and advise_slices() recommend of the methods measured here, given the first view and the depth
+/// of one pixel in 64, and how far that is from the best method.
 std::string advice_of(const SceneReport& report, const PreparedView& view) {
     const Result &box = report.best([](const Way&way) { return way.method == std::string_view("box"); }),
                  &best = report.best(ours);
@@ -352,7 +352,7 @@ std::string sentence(const SceneReport& report) {
     return s + report.advice;
 }
 
-/// Where lights can end for 1 % of RMSE, a smooth window and the lost mean given back.
+/// Returns at what brightness lights can end for an error of 1 %, with a smooth end and the mean loss added back.
 std::string ending_sentence(const SceneReport& report) {
     const Ending* last = nullptr;
     for (const Ending& ending : report.endings) {
@@ -368,7 +368,7 @@ std::string ending_sentence(const SceneReport& report) {
 
 const TableRow row_head = {"method", "px", "frame", "at worst", "evaluations", "verdict"};
 
-/// In which scenes a method is as good as any, at its best tile size: of which, and by what cost.
+/// Asks in which scenes one of some methods, at its best tile size, costs as little as any.
 struct Question {
     const char* verdict;
     bool (*wanted)(const Way&);
@@ -402,7 +402,7 @@ std::string verdict_of(const std::vector<SceneReport>& reports, const std::strin
     return text("leave it out at %g ns: %.0f %% behind the best or more", evaluation_ns, 100 * (least - 1));
 }
 
-/// A method over all scenes, each at its best tile size there.
+/// Returns a table row for a method over all scenes, at its best tile size in each.
 TableRow row_of(const std::vector<SceneReport>& reports, const std::string& method) {
     const auto this_one = [&](const Way& way) { return way.method == method; };
     const bool alone = reports.size() == 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kinds of scene that ask different things of the binning. Each is a camera, triangles that make its depth buffer, and as
-// many light sets as are asked for.
+// Kinds of scene that are hard for binning in different ways. Each has a camera, triangles for its depth buffer, and
+// any number of light sets.
 #pragma once
 
 #include "dice.hpp"
@@ -24,16 +24,16 @@
 #include <vector>
 
 using Spots = std::vector<lightbin::Spot>;
-using LightSet = std::variant<Lights, Spots>;  ///< spots where any is one
+using LightSet = std::variant<Lights, Spots>;  ///< spots if any of the lights is a spot
 
 struct BenchScene {
     std::string name;
     glm::mat4 projection;              ///< OpenGL's: looks down -z, clip depth -1..1, near and far finite
     std::vector<glm::vec3> triangles;  ///< in view space, three corners each
     std::function<Lights(std::uint32_t seed)>
-        lights;  ///< in view space; same seed, same lights. Of a spot its whole sphere
+        lights;  ///< returns lights in view space from a seed; for spots their whole spheres
     std::function<Spots(std::uint32_t seed)> spots =
-        {};  ///< the same lights as spots; none where no light is one
+        {};  ///< returns the same lights as spots; empty if none is a spot
 
     LightSet light_set(std::uint32_t seed) const {
         if (spots) return spots(seed);
@@ -57,7 +57,7 @@ inline Lights least_spheres(const Spots& spots) {
     return lights;
 }
 
-/// A spot in the space that a rigid matrix leads to.
+/// Returns a spot moved by a rigid matrix.
 inline lightbin::Spot moved(const glm::dmat4& matrix, const lightbin::Spot& s) {
     const glm::vec3 centre(matrix * glm::dvec4(s.x, s.y, s.z, 1)),
         axis(glm::dmat3(matrix) * glm::dvec3(s.axis_x, s.axis_y, s.axis_z));
@@ -87,7 +87,7 @@ public:
         }
     }
 
-    /// place(dice, i) makes the world-space sphere of light i.
+    /// Returns the scene with lights: place(dice, i) returns the world-space sphere of light i.
     template <class Place> BenchScene scene(std::string name, std::size_t count, Place place) && {
         const auto lights = [count, place, to_view = to_view_](std::uint32_t seed) {
             Dice dice(seed);
@@ -101,7 +101,7 @@ public:
         return {std::move(name), projection(), std::move(triangles_), lights};
     }
 
-    /// place(dice, i) makes the world-space spot of light i.
+    /// Returns the scene with spots: place(dice, i) returns the world-space spot of light i.
     template <class Place> BenchScene spot_scene(std::string name, std::size_t count, Place place) && {
         const auto spots = [count, place, to_view = to_view_](std::uint32_t seed) {
             Dice dice(seed);
@@ -151,21 +151,21 @@ inline SceneBuilder street_canyon() {
     return world;
 }
 
-/// Lamps along the street and rooms behind the walls.
+/// Returns a street lamp or a lamp in a room behind the walls.
 inline glm::vec4 street_light(Dice& dice, std::size_t i) {
     if (i % 3 != 0) return {dice.between({-8, 2, -300}, {8, 5, 0}), dice.about(7, 1.5f)};
     const float side = dice.between(0, 1) < 0.5f ? -1.0f : 1.0f;
     return {side * dice.between(11, 22), dice.between(1, 20), dice.between(-300, 0), dice.about(5, 1.5f)};
 }
 
-/// Ground with boxes on it, lights above it, some beside the view.
+/// Makes ground with boxes on it and lights above it, some of them beside the view.
 inline BenchScene field_with_depth() {
     return plain_with_boxes().scene("field", 4000, [](Dice& dice, std::size_t) {
         return glm::vec4(dice.between({-160, 0.5f, -260}, {160, 6, 50}), dice.about(6, 2));
     });
 }
 
-/// Straight down on low boxes, all lights close to the ground: depth tells lights apart the least here.
+/// Makes a view straight down on low boxes, with all lights close to the ground, where a depth test helps least.
 inline BenchScene top_down() {
     SceneBuilder world({0, 60, 0}, {0, 0, 0}, {0, 0, -1});
     Dice dice(3);
@@ -182,7 +182,7 @@ inline BenchScene street() {
     return street_canyon().scene("street", 1000, street_light);
 }
 
-/// A corridor with a doorway every 8 m: most lights are in the rooms behind its walls.
+/// Makes a corridor with a doorway every 8 m. Most lights are in the rooms behind its walls.
 inline BenchScene corridor() {
     SceneBuilder world({0.3, 1.7, 0}, {0, 1.6, -50});
     world.quad({-2, 0, 4}, {0, 0, -70}, {0, 3, 0});
@@ -200,7 +200,7 @@ inline BenchScene corridor() {
     });
 }
 
-/// Thin leaves in front of ground and a far wall: most tiles see both, with a gap in depth between.
+/// Makes thin leaves in front of ground and a far wall. Most tiles show both, so their depths have a wide gap.
 inline BenchScene foliage() {
     SceneBuilder world({0, 3, 0}, {0, 4, -30});
     world.quad({-300, 0, -110}, {600, 0, 0}, {0, 80, 0});
@@ -218,7 +218,7 @@ inline BenchScene foliage() {
     });
 }
 
-/// A spot as one places it. Made with braces, as only they have dice thrown in the same order by every compiler.
+/// A spot as an author gives it. Made with braces: compilers then draw the random numbers in one order.
 struct Beam {
     glm::vec3 from;
     float range;
@@ -230,7 +230,7 @@ struct Beam {
     }
 };
 
-/// The street at night: lamps above it, head lamps of cars, light up the walls, and lamps in the rooms behind them.
+/// Makes a street at night: lamps above it, head lamps, lights up the walls, and lamps in rooms behind them.
 inline BenchScene street_lamps() {
     return street_canyon().spot_scene("lamps", 1000, [](Dice& dice, std::size_t i) {
         const float side = dice.between(0, 1) < 0.5f ? -1.0f : 1.0f, z = dice.between(-300, 0);
@@ -260,7 +260,7 @@ inline BenchScene street_lamps() {
     });
 }
 
-/// A stage from the hall: narrow beams from trusses above it, washes, and a few towards the hall.
+/// Makes a stage seen from the hall: narrow beams from above, wide floodlights, and a few lights towards the hall.
 inline BenchScene stage() {
     SceneBuilder world({0, 4, 32}, {0, 4, -5});
     world.box({-16, 0, -14}, {16, 1.4f, 8});
@@ -286,7 +286,7 @@ inline BenchScene stage() {
     });
 }
 
-/// A car park at night from a window: masts with four lamps each, head lamps of cars, and small lamps along the ways.
+/// Makes a car park at night: masts with four lamps each, head lamps, and small lamps along the paths.
 inline BenchScene car_park() {
     SceneBuilder world({0, 11, 45}, {0, 0, -30});
     Dice dice(6);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The synthetic light sets, seen by a camera 60 degrees high at 1920x1080, near 0.1, far 1000, looking down
-// -z.
+// The generated light sets, for a camera 60 degrees high at 1920x1080, near 0.1, far 1000, looking down -z.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -15,8 +14,8 @@ using Lights = std::vector<glm::vec4>;
 
 inline constexpr float tan_half_fov = 0.57735027f, aspect = 16.0f / 9.0f;
 
-/// "field": 80 % of the centres uniform in the frustum's volume from z = 1 to 200, 20 % outside it in a box
-/// of +-260 x +-160 x -50..250; radius lognormal, sigma 0.5. The median sets how many tiles a light covers.
+/// Returns lights: 80 % uniform in the frustum's volume from depth 1 to 200, 20 % outside in a box of +-260 x +-160 x
+/// -50..250; radii lognormal, sigma 0.5. The median radius sets how many tiles a light covers.
 inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0, 1), side(-1, 1);
@@ -41,11 +40,11 @@ inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) 
     return lights;
 }
 
-/// Medians at which a light in view covers, seen as a disc, 4, 11, 20, 200 tiles of 32 pixels in the mean.
+/// Median radii at which a light in view covers 4, 11, 20 and 200 tiles of 32 pixels on average, counted as a disc.
 inline constexpr float field4_median = 1.72f, field11_median = 4.1f, field20_median = 6.1154f, field200_median = 27.9f;
 
-/// "near": eye inside and beside lights. z in -3..30, |x| <= 3 + 1.2 |z|, |y| <= 3 + 0.8 |z|, radius
-/// lognormal, median 2, sigma 0.7.
+/// Returns lights around the eye, which is inside many: z in -3..30, |x| <= 3 + 1.2 |z|, |y| <= 3 + 0.8 |z|, radii
+/// lognormal with median 2 and sigma 0.7.
 inline Lights near_eye(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> depth(-3, 30), side(-1, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What each method lists of one spot or one box, beside the cells that it meets: as the shape that it is, and as a
-// sphere around it.
+// Compares the cells in which methods list a single spot or box with the cells that it truly meets: the light as it is,
+// and as a sphere around it.
 #pragma once
 
 #include "boxes_sets.hpp"
@@ -29,7 +29,7 @@
 #include <variant>
 #include <vector>
 
-/// The camera of the made sets, its projection in floats, as the exact decider has it.
+/// Returns the exact arithmetic for the camera of bench/sets.hpp.
 inline ExactDecider made_decider(int tile_size) {
     return {glm::mat4(Lens().projection()), Lens().screen, tile_size};
 }
@@ -37,7 +37,7 @@ inline lightbin::View made_view(int tile_size) {
     return *lightbin::View::from_projection(glm::mat4(Lens().projection()), Lens().screen, {.tile_size = tile_size});
 }
 
-/// Depths of each tile, drawn among those that a sphere around a light can meet: 6 % deep.
+/// Random depth intervals of tiles, near enough for a sphere around a light to meet; 6 % of the depth deep.
 struct DrawnBounds {
     std::vector<float> min, max;
 
@@ -56,11 +56,11 @@ using AnyLight = std::variant<lightbin::Sphere, lightbin::Spot, lightbin::Box>;
 /// A method of listing lights.
 struct ShapeMethod {
     const char* name;
-    Fact exact;  ///< what is true of the cells that the light meets
+    Fact exact;  ///< fact about the cells that the light truly meets
     bool clusters;
-    /// The lists of one light alone, valid until the next call.
+    /// Returns the lists of one light alone, valid until the next call.
     std::function<std::span<const lightbin::ListRange>(const AnyLight&, const lightbin::ZBounds&)> lists;
-    /// Of all lights of a family: entries by the form that a light is binned in, and cells that the lights meet.
+    /// Entries of all lights of a family, by the form in which a light is binned; and cells that the lights truly meet.
     std::array<std::uint64_t, 3> entries = {};
     std::uint64_t met = 0;
 
@@ -99,19 +99,19 @@ inline std::vector<ShapeMethod> shape_methods() {
 /// Lights of one shape and size.
 struct ShapeFamily {
     std::string name;
-    /// Of each light, the forms that it is binned in: first a sphere around it, last the light itself.
+    /// For each light the forms in which it is binned, from a sphere around it to the light itself.
     std::vector<std::vector<AnyLight>> lights;
 };
 
-/// What the families and methods gave in all.
+/// Results of all families of lights and all methods.
 struct ShapeErrors {
     std::vector<TableRow> table;
     std::uint64_t misses = 0, open = 0;
-    std::vector<double> saved;  ///< of each family and method: the entries of spheres over those of the lights
+    std::vector<double> saved;  ///< entries of spheres over those of the lights, for each family and method
 };
 
-/// Lists each light alone by each method, in each form, and writes a CSV file. The bounds of a family are drawn from a
-/// seed that counts up from `seed`.
+/// Lists each light alone by each method in each form, and writes a CSV file. The random depths of tiles have the seeds
+/// `seed`, `seed` + 1 and so on, one for each family.
 inline ShapeErrors measure_shapes(const char* path, const char* header, const char* head,
                                   const std::vector<ShapeFamily>& families, std::uint32_t seed) {
     const lightbin::View view = made_view(64);
@@ -123,7 +123,7 @@ inline ShapeErrors measure_shapes(const char* path, const char* header, const ch
     errors.table = {{head}};
     for (const ShapeMethod& method : all)
         errors.table.push_back({method.name});
-    // What is true of the cells, in the order of a grid's ranges.
+    // Facts about each cell, in the order of a grid's ranges.
     using Facts = std::vector<std::uint32_t>;
     const auto add = [&](const ExactPairs& pairs, Facts& facts) {
         for (const std::vector<Pair>& its : pairs.tiles)
@@ -174,7 +174,7 @@ inline ShapeErrors measure_shapes(const char* path, const char* header, const ch
     return errors;
 }
 
-/// Spots by half angle, in spots_error.csv: as the sphere of their range, as their least sphere and as themselves.
+/// Measures spots by half angle, as their range's sphere, their least sphere and spots; writes spots_error.csv.
 inline ShapeErrors measure_spots(std::size_t spots) {
     std::vector<ShapeFamily> families;
     std::uint32_t seed = 0;
@@ -187,7 +187,7 @@ inline ShapeErrors measure_spots(std::size_t spots) {
                           "half angle", families, 100);
 }
 
-/// Boxes of one family, of half lengths or radii .05 to .25 of their depth, with their middles in view.
+/// Returns boxes of one shape with half lengths or radii of 0.05 to 0.25 of their depth, and their centres in view.
 inline Boxes boxes_of(const BoxFamily& family, std::size_t count, std::uint32_t seed) {
     Dice dice(seed);
     Boxes boxes;
@@ -200,7 +200,7 @@ inline Boxes boxes_of(const BoxFamily& family, std::size_t count, std::uint32_t 
     return boxes;
 }
 
-/// Boxes by family, in boxes_error.csv: as the sphere around them and as themselves.
+/// Measures boxes by shape, as spheres around them and as boxes; writes boxes_error.csv.
 inline ShapeErrors measure_boxes(std::size_t boxes) {
     std::vector<ShapeFamily> families;
     std::uint32_t seed = 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the lights are: vec4s or structs, in view space or world space; and what a user has who moves them in a loop of the
-// program's own.
+// Forms of the lights: vec4s or structs, in view space or world space; and a loop of the program's own that moves them.
 #pragma once
 
 #include "builds.hpp"
@@ -15,8 +14,8 @@ enum Source { view_vec4s, world_vec4s, loop_vec4s, view_structs, world_structs }
 inline constexpr const char* source_names[] = {"view_vec4s", "world_vec4s", "loop_vec4s", "view_structs",
                                                "world_structs"};
 
-/// The loop a user would write: GLM moves the centres, radii stay. Not inlined, and the matrix a copy that no store can
-/// change: as quick as compilers make it.
+/// Moves lights as a user's loop would: GLM moves the centres, radii stay. Not inlined, and with a copy of the matrix,
+/// which no store can change: so compilers make it fast.
 [[gnu::noinline]] inline void move_lights(const Lights& lights, const glm::mat4 view_matrix, Lights& moved) {
     moved.resize(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -47,7 +47,7 @@ struct FlatCell {
                      d = n.x * x + n.y * y + n.z < 0 ? depths.max : depths.min;
         return {d * x, d * y, d};
     }
-    /// What no corner's coordinates add up to more than.
+    /// Returns an upper limit for the sum of any corner's coordinates.
     double reach() const {
         const auto steepest = [](double low, double high) { return std::max(std::abs(low), std::abs(high)); };
         return depths.max * (1 + steepest(x_low, x_high) + steepest(y_low, y_high));
@@ -78,7 +78,7 @@ public:
         axis_ = 1 / length(given) * given;
     }
 
-    /// The point that is farthest along n, from the apex.
+    /// Returns the point of the spot that is farthest along n, relative to the apex.
     Point farthest(const Point& n) const {
         const double along = dot(n, axis_);
         const Point aside = n - along * axis_;
@@ -95,7 +95,7 @@ public:
     }
     Point middle() const { return apex + radius_ / 2 * axis_; }
 
-    /// Beyond doubt all of the cell lies beyond the spot along n.
+    /// Returns true only if the whole cell certainly lies beyond the spot along n.
     bool surely_beyond(const Point& n, const FlatCell& cell) const {
         const double blur = 0x1p-40 * size_of(n) * (cell.reach() + size_of(apex) + radius_);
         return dot(n, cell.lowest(n) - apex) - dot(n, farthest(n)) > blur;
@@ -110,12 +110,12 @@ private:
 
 namespace detail {
 
-/// A corner of the cell, and how far it is from a point of the spot.
+/// A corner of the cell, and its vector from a point of the spot.
 struct Corner {
     Point at, off;
 };
 
-/// The weights of the point of the corners' affine hull that is nearest to the spot; nothing where they lie too flat.
+/// Returns the corners' weights for the point of their affine hull nearest to the spot; nothing if too flat.
 inline std::optional<std::array<double, 4>> nearest_weights(const std::vector<Corner>& corners) {
     const std::size_t n = corners.size() - 1;
     double m[3][4] = {};  // the sides' products, and on the right those with the first corner
@@ -144,10 +144,10 @@ inline std::optional<std::array<double, 4>> nearest_weights(const std::vector<Co
     return weights;
 }
 
-/// Some of the corners with their weights, the nearest point of their hull to the spot.
+/// Some corners of the cell, and their weights for the point of their hull that is nearest to the spot.
 struct Nearest {
     std::vector<Corner> corners;
-    Point at = Point(0), off = Point(0);  ///< of the cell; and from the spot
+    Point at = Point(0), off = Point(0);  ///< the nearest point of the cell, and the vector to it from the spot
 };
 
 inline Nearest nearest(const std::vector<Corner>& corners) {
@@ -171,7 +171,7 @@ inline Nearest nearest(const std::vector<Corner>& corners) {
     return best;
 }
 
-/// Whether both have a point that is at this one or a little further within.
+/// Returns true only if the cell and the spot certainly share this point or one a little further inside.
 inline bool surely_meet_at(const FlatCell& cell, const FlatSpot& spot, const Point& at) {
     const Point in_cell = cell.middle() - at, in_spot = spot.middle() - at;
     for (const double step : {0.0, 0x1p-30, 0x1p-20, 0x1p-10, 0x1p-4})
@@ -184,7 +184,7 @@ inline bool surely_meet_at(const FlatCell& cell, const FlatSpot& spot, const Poi
 
 }  // namespace detail
 
-/// Whether a spot meets a cell; nothing: unknown.
+/// Returns whether a spot meets a cell; nothing if doubles cannot tell.
 inline std::optional<bool> surely_meets(const FlatCell& cell, const FlatSpot& spot) {
     detail::Nearest nearest;
     nearest.off = cell.middle() - spot.apex;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The synthetic sets of spots, seen by the camera of sets.hpp, and lights of simpler kinds whose lists are as long.
+// Generated sets of spots for the camera of sets.hpp, and lights of simpler kinds whose lists are as long.
 #pragma once
 
 #include "dice.hpp"
@@ -33,7 +33,7 @@ inline lightbin::Spot spot_in(const glm::vec4& sphere, Dice& dice, float half_an
             axis.x,   axis.y,   axis.z,   std::cos(glm::radians(half_angle_in_degrees))};
 }
 
-/// The field's spheres as ranges of spots: any direction, half angles of 10 to 80 degrees.
+/// Returns spots with the spheres of field() in sets.hpp, random directions, half angles of 10 to 80 degrees.
 inline Spots spot_field(std::size_t count, float median_range, std::uint32_t seed) {
     Dice dice(seed);
     Spots spots;
@@ -42,10 +42,10 @@ inline Spots spot_field(std::size_t count, float median_range, std::uint32_t see
     return spots;
 }
 
-/// Medians at which a spot in view meets 4 and 20 tiles of 32 pixels in the mean.
+/// Median ranges at which a spot in view meets 4 and 20 tiles of 32 pixels on average.
 inline constexpr float spots4_median = 2.95f, spots20_median = 10.3f;
 
-/// Spots of one half angle, of sides .05 to .25 of their depth, with apexes in view.
+/// Returns spots of one half angle with lengths of 0.05 to 0.25 of their depth and apexes in view.
 inline Spots spots_of_angle(std::size_t count, float half_angle_in_degrees, std::uint32_t seed) {
     Dice dice(seed);
     Spots spots;
@@ -58,11 +58,11 @@ inline Spots spots_of_angle(std::size_t count, float half_angle_in_degrees, std:
     return spots;
 }
 
-/// Lights of one kind, and lights of simpler kinds around the same centres.
+/// The spots or boxes of a frame, and simpler kinds of lights around the same centres.
 template <class Light> struct KindFrame {
     std::vector<Light> lights;
     Lights spheres;
-    Spots spots = {};  ///< beside boxes
+    Spots spots = {};  ///< only if the lights are boxes
 };
 using SpotFrame = KindFrame<lightbin::Spot>;
 
@@ -73,8 +73,8 @@ inline float& radius_of(lightbin::Spot& spot) {
     return spot.radius;
 }
 
-/// Scales the radii of the lights `others` of all frames until they make as many entries as the frames' own lights:
-/// entries(lights) of each.
+/// Scales the radii of the frames' simpler lights `others` until their lists have as many entries as those of the
+/// frames' own lights. entries(lights) counts them.
 template <class Light, class Others, class Entries>
 void match_entries(std::vector<KindFrame<Light>>& frames, Others KindFrame<Light>::*others, Entries entries) {
     std::size_t wanted = 0;
@@ -95,7 +95,7 @@ void match_entries(std::vector<KindFrame<Light>>& frames, Others KindFrame<Light
     }
 }
 
-/// The frames with their spheres, and their spots if they have any, scaled to as many entries as the lights make.
+/// Scales the frames' spheres, and spots if they have any, until they make as many entries as the lights.
 template <class Light, class Entries>
 std::vector<KindFrame<Light>> matched_frames(std::vector<KindFrame<Light>> frames, Entries entries) {
     match_entries(frames, &KindFrame<Light>::spheres, entries);

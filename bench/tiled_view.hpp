@@ -28,15 +28,15 @@ inline SeenScene see(BenchScene scene) {
     return {std::move(scene), std::move(picture)};
 }
 
-/// A view of a scene on a tile grid, with its Z bounds and how much is drawn in its tiles.
+/// A view of a scene with its tiles: each tile's least and greatest depth, and how many of its pixels are drawn.
 struct TiledView {
     lightbin::View view;
     FlatView flat;
     std::vector<float> min, max;
-    std::vector<std::uint32_t> drawn;  ///< pixels a tile that show something
+    std::vector<std::uint32_t> drawn;  ///< number of drawn pixels in each tile
     std::uint64_t all_drawn = 0;
-    double reduce_seconds = 0;          ///< what making minimum and maximum takes
-    lightbin::Slices clusters, z_bins;  ///< as far as the lights reach
+    double reduce_seconds = 0;          ///< seconds to find each tile's least and greatest depth
+    lightbin::Slices clusters, z_bins;  ///< slices up to where the lights reach
 
     TiledView(const BenchScene& scene, const Picture& picture, int tile_size)
         : view(*lightbin::View::from_projection(scene.projection, picture.size, {.tile_size = tile_size})),
@@ -50,7 +50,7 @@ struct TiledView {
         count_drawn(picture);
     }
 
-    /// Makes minimum and maximum anew, and returns what it took.
+    /// Finds each tile's least and greatest depth again, and returns the seconds.
     double reduce(const Picture& picture) {
         return seconds([&] {
             if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, {min, max}))
@@ -66,7 +66,7 @@ struct TiledView {
         return sum;
     }
 
-    /// Light evaluations a drawn pixel: the mean length of its tile's list.
+    /// Returns the mean number of light evaluations for a drawn pixel: the length of its tile's list.
     double evaluations(std::span<const lightbin::ListRange> lists) const {
         return all_evaluations(lists) / static_cast<double>(all_drawn);
     }
@@ -84,7 +84,7 @@ private:
         }
     }
 
-    /// The depth to which lights reach in view, which a renderer knows of the frame before.
+    /// Returns the depth up to which lights in view reach. A renderer knows it from the last frame.
     static float reach_of(const BenchScene& scene) {
         const Frustum frustum(scene.projection);
         double reach = 2 * frustum.near_depth;

@@ -9,13 +9,13 @@
 #include <functional>
 #include <vector>
 
-/// The seconds that each piece of work took in each turn, and what the pieces made.
+/// The seconds that each piece of work took in each turn, and what the pieces returned.
 struct Turns {
     std::vector<std::vector<double>> seconds;  ///< by work, then by turn
-    std::vector<std::size_t> made;             ///< by work: the sum of what it returned
-    std::size_t together = 1;                  ///< frames a turn
+    std::vector<std::size_t> made;             ///< for each work the sum of what it returned
+    std::size_t together = 1;                  ///< frames that are timed together in a turn
 
-    /// The median of one work over the median of another.
+    /// Returns the median time of one work over the median time of another.
     double ratio(std::size_t of, std::size_t to) const { return median(seconds[of]) / median(seconds[to]); }
     /// The distance from the 10th to the 90th percentile of the ratios of single turns.
     double spread(std::size_t of, std::size_t to) const {
@@ -35,7 +35,7 @@ struct Turns {
         }
         return pairs;
     }
-    /// Of one frame: the median of a work's time, and the mean of what it made.
+    /// Returns, for one frame, the median time of a work and the mean of what it returned.
     double seconds_a_frame(std::size_t of) const { return median(seconds[of]) / double(together); }
     double made_a_frame(std::size_t of) const {
         return double(made[of]) / double(seconds[of].size() * together);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All ways to make lists that the report holds against each other.
+// All methods of making lists that the report compares.
 #pragma once
 
 #include "built.hpp"
@@ -23,9 +23,9 @@ struct Way {
     int tile_size;
     bool depth_test;
     lightbin::Slicing slicing;
-    bool needs_bounds;  ///< Z bounds are made for it first
-    bool ours;          ///< or the flat loop, as engines do it
-    bool variant;       ///< of another, to tell what a part of it pays; in no table
+    bool needs_bounds;  ///< each tile's least and greatest depth must be found first
+    bool ours;          ///< lightbin's; otherwise the plain loop of flat.hpp
+    bool variant;       ///< only measures what a part of another method gains
     Form form;
     BuildLists build;
     bool masks = false;
@@ -38,7 +38,7 @@ inline LightSet lights_of(const BenchScene& scene, Form form, std::uint32_t seed
 
 class Ways {
 public:
-    /// Returns all ways to light a scene: with spots, also those that list the spheres around the spots instead.
+    /// Returns all methods for a scene. With spots, some list spheres around the spots.
     static std::vector<Way> all(bool with_spots) {
         using lightbin::Options, lightbin::Slicing;
         constexpr Options box = {.depth_test = true},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light sets as programs have them: in world space, as vec4s or in structs of the program's own.
+// Lights as programs store them: in world space, as vec4s or in structs of the program's own.
 #pragma once
 
 #include "lens.hpp"
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-/// A light of a program's own: 64 bytes, of which binning needs 16.
+/// A struct of a program's own with a light: 64 bytes, of which binning needs 16.
 struct UserLight {
     glm::vec3 position;
     glm::vec3 colour;
@@ -32,7 +32,7 @@ struct UserLight {
 };
 static_assert(sizeof(UserLight) == 64);
 
-/// A lambda, as users write it: what is passed by a function's address is called, not inlined.
+/// A lambda, as users write it: a function passed by its address would be called instead of inlined.
 inline constexpr auto sphere_of = [](const UserLight& light) -> lightbin::Sphere {
     return {light.position.x, light.position.y, light.position.z, light.radius};
 };
@@ -46,13 +46,13 @@ inline std::vector<UserLight> structs_of(const Lights& lights) {
     return structs;
 }
 
-/// The same lights in view space and in world space. Each frame has arrays of its own, so that none is more often in
-/// the cache than another.
+/// The same lights in view space and in world space. Each frame has its own arrays, so that none is in the cache more
+/// often than another.
 struct WorldFrame {
-    Frame view;  ///< the lights as that matrix moves them, to the nearest float
+    Frame view;  ///< the lights in view space, rounded to float
     glm::mat4 view_matrix;
     Lights lights;
-    std::vector<UserLight> view_structs, structs;  ///< the lights as structs, in view and in world space; or empty
+    std::vector<UserLight> view_structs, structs;  ///< in view and in world space; may be empty
 };
 
 inline WorldFrame world_frame(const Lens& lens, const glm::mat4& view_matrix, Lights lights) {
@@ -84,8 +84,8 @@ inline std::vector<WorldFrame> world_frames(std::size_t count, float median_radi
     return frames;
 }
 
-/// Bevy's stress test of that name: 100,000 small lights on a sphere around the eye, which turns by 0.15 radians a
-/// second at 60 frames a second.
+/// Returns frames of Bevy's stress test many_lights: 100,000 small lights on a sphere around the eye, which turns by
+/// 0.15 radians a second at 60 frames a second.
 inline std::vector<WorldFrame> many_lights_frames() {
     constexpr std::size_t count = 100000;
     const double golden_ratio = (1 + std::sqrt(5.0)) / 2, pi = std::acos(-1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random numbers that are the same with every standard library, whose distributions differ.
+// Random numbers that are the same with every standard library: the standard distributions are not.
 #pragma once
 
 #include <cstdint>

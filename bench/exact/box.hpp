@@ -141,13 +141,13 @@ inline std::optional<Rational> distance2(const std::vector<HalfSpace>& space, co
     return dot(away, away);
 }
 
-/// The box of a light with its numbers as they are given; `half_axes` and `taper` as lightbin::Box has them.
+/// A box light with the numbers as given; `half_axes` and `taper` have the meaning of lightbin::Box.
 struct BoxLight {
     float x, y, z, radius;
     float centre[3], half_axes[3][3], taper;
 };
 
-/// Corner i is on the side that half axis k points to if bit k is set.
+/// Returns the eight corners. Corner i lies in the direction of half axis k if bit k of i is set.
 inline std::vector<Vector> exact_corners(const BoxLight& light) {
     const auto vector = [](const float(&v)[3]) {
         return Vector{exact(static_cast<double>(v[0])), exact(static_cast<double>(v[1])),
@@ -172,7 +172,7 @@ struct ExactBox {
         : ball(exact_ball(light.x, light.y, light.z, light.radius)), faces(convex_hull(exact_corners(light))) {}
 };
 
-/// Whether the ball and the box have a point of the cell in common.
+/// Returns whether the ball and the box have a point of the cell in common.
 inline bool meets(std::vector<HalfSpace> cell, const ExactBox& box) {
     cell.insert(cell.end(), box.faces.begin(), box.faces.end());
     if (box.ball.all) return distance2(cell, {}).has_value();
@@ -181,14 +181,14 @@ inline bool meets(std::vector<HalfSpace> cell, const ExactBox& box) {
     return distance && *distance <= radius2;
 }
 
-/// A box in the camera's axes, in double: corners as exact_corners() has them, each of whose coordinates is off by at
-/// most `error`.
+/// A box in the camera's axes, in double precision. Its corners are in the order of exact_corners(), and each
+/// coordinate is off by at most `error`.
 struct FlatBox {
     double corners[8][3];
     double error;
 };
 
-/// Of a box whose corners are, in the camera's axes, balls of no radius: to_camera(corner).
+/// Returns a box with its corners moved to the camera's axes by to_camera(corner), which returns a ball of radius 0.
 template <class ToCamera> FlatBox flat_box(const BoxLight& light, const ToCamera& to_camera) {
     FlatBox box = {};
     const std::vector<Vector> corners = exact_corners(light);
@@ -203,7 +203,7 @@ template <class ToCamera> FlatBox flat_box(const BoxLight& light, const ToCamera
     return box;
 }
 
-/// Beyond doubt the box does not meet the block of tiles [x0, x1) x [y0, y1) between these depths.
+/// Returns true only if it is certain that the box does not meet the tiles [x0, x1) x [y0, y1) between these depths.
 inline bool apart(Filter& filter, int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBox& box) {
     using Direction = Filter::Direction;
     const auto separates = [&](const Direction& direction) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user hands over: a matrix and the API's settings, no more.
+// A camera as a user gives it: a projection matrix, viewport, tile size and the settings of the graphics API.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ using Matrix = Matrix4<double>;
 struct Camera {
     std::string name;
     Matrix m{};            ///< every entry is a float, unless `doubles`
-    bool doubles = false;  ///< handed over in double precision
+    bool doubles = false;  ///< the matrix was given in double precision
     int width = 0, height = 0, tile = 0;
     bool zero_to_one = false;  ///< range of clip depth
     bool upper_left = false;   ///< window origin
-    bool reversed = false;     ///< declared for orthographic matrices only
+    bool reversed = false;     ///< set by the user for orthographic matrices only
 };
 
 }  // namespace oracle

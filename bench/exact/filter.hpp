@@ -42,7 +42,7 @@ struct FlatDepths {
     FlatDepths(double low, double high) : min(low), max(high) {}
     FlatDepths() = default;
 
-    /// Beyond doubt no depth lies between them.
+    /// Returns true only if it is certain that no depth lies between min and max.
     bool surely_empty() const { return min - max > 0x1p-50 * (std::abs(min) + std::abs(max)); }
     /// Beyond doubt some do.
     bool surely_some() const {
@@ -61,7 +61,7 @@ public:
         : oracle_(exact), columns_(static_cast<std::size_t>(exact.tiles_x()) + 1),
           rows_(static_cast<std::size_t>(exact.tiles_y()) + 1) {}
 
-    /// True: the ball does not meet the block of tiles [x0, x1) x [y0, y1) between these depths. False: unknown.
+    /// Returns true if it is proven that the ball does not meet these tiles between these depths.
     bool apart(int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
         if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
         const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
@@ -71,7 +71,7 @@ public:
         return apart_at_edge(cell, cell, depths, ball);
     }
 
-    /// Whether the ball meets the block of tiles [x0, x1) x [y0, y1) between these depths; nothing: unknown.
+    /// Returns whether the ball meets these tiles between these depths; nothing if doubles cannot tell.
     std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths,
                               const FlatBall& ball) {
         if (apart(x0, x1, y0, y1, depths, ball)) return false;
@@ -86,8 +86,8 @@ public:
         return meets_wedge(1, {row(y0), row(y1)}, depths, ball);
     }
 
-    /// The squared distance of the ball's centre from the wedge of a whole column or row of tiles, give or take 2^-48
-    /// of the sizes involved.
+    /// The squared distance of the ball's centre from the wedge of space that a column or row of tiles shows, within
+    /// 2^-48 of the sizes involved.
     double column_distance2(int x, const FlatDepths& depths, const FlatBall& ball) {
         double at = 0;
         return nearest(wedge(0, {column(x), column(x + 1)}), depths, ball, at);
@@ -116,22 +116,22 @@ public:
         double x, y, z;
     };
 
-    /// True: every point p of the cell of the block of tiles [x0, x1) x [y0, y1) between these depths has
-    /// n.p > reach.  False: unknown.
+    /// Returns true if every point p of the cell behind the tiles [x0, x1) x [y0, y1) between these depths is proven to
+    /// have n.p > reach; false means unknown.
     bool beyond(const Direction& n, int x0, int x1, int y0, int y1, const FlatDepths& depths, double reach) {
         const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
         double sizes = 0;
         const auto along = least_along(n, cell, depths, sizes);
         return along && *along - 0x1p-47 * sizes > reach;
     }
-    /// The direction with a tilt that puts the sign of B beyond doubt, if it is at right angles to an edge of the cell.
+    /// Tilts a direction that is at right angles to an edge of the cell, so that the sign of B is certain.
     Direction tilted(const Direction& n, int x0, int x1, int y0, int y1) {
         const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
         const Direction up = lifted(n.x, n.y, cell);
         return std::abs(n.z - up.z) <= 0x1p-40 * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) ? up : n;
     }
-    /// Directions that may separate something from the cell: into it at right angles to its sides, along depth, and
-    /// along its edges.
+    /// Returns directions that may separate a shape from the cell: at right angles to its sides, along depth, and along
+    /// its edges.
     std::array<Direction, 6> sides(int x0, int x1, int y0, int y1) {
         const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
         return {{of_planes(0, 1, cell),
@@ -155,7 +155,7 @@ private:
     struct Cell {
         FlatLine side[2][2];  ///< axis, low or high
     };
-    /// The end of an axis that bounds nothing.
+    /// Returns a line that bounds nothing, for an axis without bounds.
     static FlatLine nowhere(int direction) {
         return {direction * std::numeric_limits<double>::infinity(), 0, true};
     }
@@ -172,8 +172,8 @@ private:
         return flat;
     }
 
-    /// The direction into the cell with these x and y, at right angles to its lines, but for a tilt that puts
-    /// the sign of B beyond doubt.
+    /// Returns the direction with these x and y that is at right angles to the cell's lines, with a tilt that makes the
+    /// sign of B (see the top) certain.
     static Direction lifted(double x, double y, const Cell& cell) {
         const double u = x * cell.side[0][x > 0 ? 0 : 1].slope, v = y * cell.side[1][y > 0 ? 0 : 1].slope;
         return {x, y, 0x1p-44 * (std::abs(u) + std::abs(v)) - (u + v)};
@@ -182,7 +182,7 @@ private:
         return axis == 0 ? lifted(towards, 0, cell) : lifted(0, towards, cell);
     }
 
-    /// The least n.p of a cell's points p, give or take 2^-47 of `sizes`; nothing: unknown.
+    /// Returns the least n.p of a cell's points p, with an error of at most 2^-47 of `sizes`; or nothing.
     static std::optional<double> least_along(const Direction& n, const Cell& cell, const FlatDepths& depths,
                                              double& sizes) {
         const FlatLine& x = cell.side[0][n.x > 0 ? 0 : 1];
@@ -207,7 +207,7 @@ private:
         return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
     }
 
-    /// What lies between two lines of an axis, wherever it is along the other.
+    /// Returns the part of space between two lines of one image axis, unbounded along the other axis.
     static Cell wedge(std::size_t axis, const FlatLine (&lines)[2]) {
         Cell cell = {{{nowhere(-1), nowhere(1)}, {nowhere(-1), nowhere(1)}}};
         cell.side[axis][0] = lines[0], cell.side[axis][1] = lines[1];
@@ -221,7 +221,7 @@ private:
         return std::nullopt;
     }
 
-    /// The lines of the other axis count for nothing, as the direction has no part along it.
+    /// Returns whether a direction with no part along the other image axis separates the ball from a wedge.
     static bool apart_from_wedge(std::size_t axis, const FlatLine (&lines)[2], const FlatDepths& depths,
                                  const FlatBall& ball) {
         if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
@@ -232,12 +232,12 @@ private:
         return apart_at_edge(wedge(axis, lines), cell, depths, ball);
     }
 
-    /// Beyond doubt there are such depths in view. A camera may have none at all between its planes.
+    /// Returns true only if some of these depths are certainly in view. A camera may have no depth between its planes.
     bool some(const FlatDepths& depths) const { return !oracle_.range().empty && depths.surely_some(); }
 
     static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
 
-    /// The squared distance from the cell, and the depth it is taken at; found as meets() of oracle.hpp does.
+    /// Returns the cell's squared distance from the ball's centre, and the depth of the nearest point.
     static double nearest(const Cell& cell, const FlatDepths& depths, const FlatBall& c, double& best_d) {
         const double centre[2] = {c.x, c.y};
         double best = std::numeric_limits<double>::infinity();
@@ -273,7 +273,7 @@ private:
         return best;
     }
 
-    /// Beyond doubt a point of the cell, that at the depth of the nearest one, is in the ball.
+    /// Returns true only if the cell's point at the depth of its nearest point is certainly in the ball.
     bool reaches(const Cell& cell, const FlatDepths& depths, const FlatBall& c) const {
         if (!some(depths)) return false;
         const double centre[2] = {c.x, c.y};
@@ -295,7 +295,7 @@ private:
         return reach > 0x1p-800 && distance2 * (1 + 0x1p-48) <= reach;
     }
 
-    /// By the direction to the nearest point of `found`, which is `cell` but for an axis that bounds nothing.
+    /// Tries the direction to the point of `found` nearest to the ball; `found` may lack the bounds of one axis.
     static bool apart_at_edge(const Cell& found, const Cell& cell, const FlatDepths& depths,
                               const FlatBall& c) {
         const double centre[2] = {c.x, c.y};

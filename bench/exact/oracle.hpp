@@ -31,7 +31,7 @@
 
 namespace oracle {
 
-// Expression templates off: auto and ?: then mean what they say.
+// Without expression templates `auto` and ?: have the number's own type.
 using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
 
 inline Rational exact(double value) {
@@ -39,7 +39,7 @@ inline Rational exact(double value) {
     return Rational(value);
 }
 
-/// The value within 2^-52 of itself, if it is in the range of double; a double as it is.
+/// Returns the value as a double, within 2^-52 of it if it is in the range of double. A double is returned unchanged.
 inline double nearly(const Rational& value) {
     return mpq_get_d(value.backend().data());  // many times as fast as Boost's, which rounds to nearest
 }
@@ -65,7 +65,7 @@ inline Rational dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// A closed ball; `all` is the ball of infinite radius.
+/// A closed ball. `all`: its radius is infinite.
 struct Ball {
     Vector centre;
     Rational radius;
@@ -77,13 +77,13 @@ inline Ball exact_ball(float x, float y, float z, float radius) {
     return {{exact(x), exact(y), exact(z)}, all ? Rational(0) : exact(radius), all};
 }
 
-/// Pixel edges of a block, window coordinates. Real numbers, not only integers: excess is tested with grown
+/// The edges of a block of tiles in window coordinates. They need not be integers: tests of excess entries enlarge
 /// blocks.
 struct Edges {
     Rational low, high;
 };
 
-/// View depths, closed; nothing given is no bound.
+/// A closed interval of view depths; an absent end is no bound.
 struct Depths {
     std::optional<Rational> min, max;
     bool empty = false;
@@ -197,11 +197,11 @@ inline bool meets(const std::vector<HalfSpace>& cell, const Ball& ball) {
     return ball.all || dot(away, away) <= square(ball.radius);
 }
 
-//------------------------------------------------------------------------------------------------------------
-// Decider 1: in the camera's own axes a block of tiles is  low(d) <= c <= high(d)  in each image axis, linear
-// in depth d.
+// ------------------------------------------------------------------------------------------------------------
+// Decider 1: in the camera's own axes a block of tiles is  low(d) <= c <= high(d)  in each image axis: c is the
+// coordinate, d the depth, and both bounds are linear in d.
 
-/// offset + slope * d; one of the two is 0 (perspective: offset, orthographic: slope).
+/// The line offset + slope * depth: offset is 0 for a perspective, slope 0 for an orthographic camera.
 struct Line {
     Rational offset, slope;
     Rational at(const Rational& d) const { return offset + slope * d; }
@@ -211,12 +211,12 @@ struct Slab {
     Line low, high;
 };
 
-/// The image axis the slab is in decides which coordinate of the ball counts.
+/// Bounds of a cell in the image axes x and y, each compared with that coordinate of the ball.
 struct Slabs {
     std::optional<Slab> x, y;  ///< nothing: this axis is not bounded
 };
 
-/// A ball in the camera's axes: image coordinates growing with pixels, depth growing away from the eye.
+/// A ball in the camera's axes: image coordinates that grow with pixels, depth that grows away from the eye.
 struct CameraBall {
     Rational x, y, depth, radius;
     bool all = false;
@@ -300,14 +300,14 @@ public:
             for (int row = 0; row < 4; ++row)
                 m_[column][row] = exact(camera.m[column][row]);
         const auto zero = [&](int column, int row) { return m_[column][row].is_zero(); };
-        // What meets() on slabs takes for granted; the other decider does not.
+        // Decider 1 assumes that these entries of the matrix are 0; decider 2 does not.
         const bool axes = zero(1, 0) && zero(0, 1) && zero(0, 2) && zero(1, 2) && zero(0, 3) && zero(1, 3);
         const bool eye = orthographic() ? m_[3][3] > 0 && zero(2, 0) && zero(2, 1)
                                         : zero(3, 3) && zero(3, 0) && zero(3, 1);
         if (!axes || !eye) std::abort();
 
-        // A perspective w = (direction) z; an orthographic one says nothing, but NDC depth does, given
-        // reversed or not.
+        // The sign of depth: for a perspective, of the entry that makes w from z; for an orthographic matrix, of the
+        // slope of NDC depth, which the user says is reversed or not.
         const Rational& along = orthographic() ? m_[2][2] : m_[2][3];
         depth_sign_ = (along > 0) != (orthographic() && camera.reversed) ? 1 : -1;
         for (const HalfSpace& plane : depth_planes()) {  // a.z z + b >= 0, z = sign * depth
@@ -327,11 +327,10 @@ public:
     int tiles_y() const { return (camera_.height + camera_.tile - 1) / camera_.tile; }
     int depth_sign() const { return depth_sign_; }
 
-    /// Near and far plane as view depths; no max where the far plane is at infinity.
+    /// View depths of the near and the far plane; no maximum if the far plane is at infinity.
     const Depths& range() const { return range_; }
 
-    /// The depths of a cell: near to far, and between two floats where given. -inf, +inf bound nothing from
-    /// below, above.
+    /// The depths of a cell: from near to far plane, and between `min` and `max` where they are given and finite.
     Depths depths(std::optional<float> min = {}, std::optional<float> max = {}) const {
         Depths depths = range_;
         if (min && std::isinf(*min))
@@ -345,11 +344,11 @@ public:
         return depths;
     }
 
-    /// Pixel edges of the tiles [first, last), whole tiles cut at the viewport.
+    /// The pixel edges of the tiles [first, last), cut at the viewport.
     Edges columns(int first, int last) const { return edges(first, last, camera_.width); }
     Edges rows(int first, int last) const { return edges(first, last, camera_.height); }
 
-    /// The image-plane offset in tiles, O in  tile = K c / d + O: how far the depth axis is from pixel 0.
+    /// Where the view axis is in the image, in tiles from pixel 0: O in  tile = K c / d + O.
     Rational offset_x() const { return offset(0, width_); }
     Rational offset_y() const { return offset(1, height_); }
 
@@ -383,7 +382,7 @@ public:
         return cell;
     }
 
-    /// View depth of a window depth in 0..1; nothing: at infinity or behind it.
+    /// The view depth of a window depth in 0..1; nothing if it is at infinity or beyond.
     std::optional<Rational> view_depth(const Rational& window_depth) const {
         const Rational ndc = camera_.zero_to_one ? window_depth : 2 * window_depth - 1;
         const Rational bottom = m_[2][2] - ndc * m_[2][3], top = ndc * m_[3][3] - m_[3][2];
@@ -394,7 +393,7 @@ public:
     }
 
 private:
-    /// -w <= z <= w, or 0 <= z <= w, in view space.
+    /// The near and the far plane as half-spaces of view space: -w <= z <= w, or 0 <= z <= w.
     std::vector<HalfSpace> depth_planes() const {
         const auto row = [&](const Rational& z, const Rational& w) {
             const auto mix = [&](int column) { return z * m_[column][2] + w * m_[column][3]; };
@@ -412,7 +411,7 @@ private:
     int x_sign() const { return m_[0][0] > 0 ? 1 : -1; }
     int y_sign() const { return (m_[1][1] > 0 ? 1 : -1) * up(1); }
 
-    /// Pixel edge a:  side * up * clip = (2a - side) w,  clip = m_cc * coordinate + m_2c * z + m_3c.
+    /// Pixel edge a as a line:  side * up * clip = (2a - side) w,  clip = m_cc * coordinate + m_2c * z + m_3c.
     Line line(int axis, const Rational& side, const Rational& a) const {
         const Rational scale = side * abs(m_[axis][axis]), ndc = 2 * a - side, flip = up(axis) * side;
         return {(ndc * m_[3][3] - flip * m_[3][axis]) / scale,

@@ -20,10 +20,10 @@ namespace oracle {
 using Wide =
     boost::multiprecision::number<boost::multiprecision::gmp_float<331>, boost::multiprecision::et_off>;
 
-/// What a light covers along one image axis.
+/// The pixels and tiles that a light covers along one image axis.
 struct AxisExtent {
     double low, high;  ///< in pixels, within the viewport
-    int first, last;   ///< tiles; none, and low and high without meaning, if first > last
+    int first, last;   ///< tiles; none if first > last, and then low and high mean nothing
 };
 
 class ScreenBounds {
@@ -47,7 +47,7 @@ public:
         return axes_[static_cast<std::size_t>(axis)].offset.convert_to<double>();
     }
 
-    /// Of the part of a ball beyond the near plane and not beyond the far one.
+    /// Returns the extent of the part of a ball between the near and the far plane.
     AxisExtent extent(int axis, const CameraBall& ball) const {
         const Depths& range = oracle_.range();
         if (ball.depth + ball.radius < *range.min || (range.max && ball.depth - ball.radius > *range.max))
@@ -88,12 +88,12 @@ private:
         return axis == 0 ? oracle_.column_slab(edges) : oracle_.row_slab(edges);
     }
 
-    /// Of the part beyond the near plane of a disc in the (c, z) plane: at the tangent that bounds it from above if it
-    /// touches there, else at the corner where circle and plane meet.
+    /// Returns the largest slope c / z in the part of a disc (c, z, r) beyond the near plane: at the tangent through
+    /// the eye if it touches there, else where circle and plane meet.
     Wide largest_slope(const Wide& c, const Wide& z, const Wide& r) const {
         const Wide d2 = c * c + z * z, t2 = d2 - r * r;
         if (t2 > 0) {
-            // The centre's direction turned by the tangent's angle.
+            // The direction of the disc's centre, turned by the angle of the tangent.
             const Wide t = sqrt(t2), forward = z * t - c * r;
             if (forward > 0 && (z - r > near_ || t * forward >= near_ * d2)) return (c * t + z * r) / forward;
         }

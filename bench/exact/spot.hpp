@@ -34,10 +34,10 @@ struct ExactSpot {
     Ball ball;
     Vector axis;      ///< of any length but 0
     Rational cosine;  ///< of the half angle
-    /// It has no certificates: it is decided as a ball, and from 90 degrees on the half-space of its rim.
+    /// Returns whether the spot is decided without certificates: as a ball, perhaps cut by the plane of its rim.
     bool whole() const { return ball.all || cosine <= 0; }
-    /// The half-space that the rim ends, its plane moved by a part of its distance from the apex: the length of the
-    /// axis, a root, is rounded.
+    /// Returns the half-space in front of the rim. Its plane is moved outward by this part of its distance from the
+    /// apex, because the axis' length is rounded.
     HalfSpace before_rim(double outward) const {
         const Rational length = exact(std::sqrt(nearly(dot(axis, axis))) * (1 + outward));
         return {axis, -ball.radius * cosine * length - dot(axis, ball.centre)};
@@ -49,10 +49,10 @@ inline ExactSpot exact_spot(float x, float y, float z, float radius, float axis_
     return {exact_ball(x, y, z, radius), {exact(axis_x), exact(axis_y), exact(axis_z)}, exact(cosine)};
 }
 
-/// That a spot and a cell are apart, see above.
+/// A proof that a spot and a cell are apart: the weights w and the vector u of the text at the top of this file.
 struct Separation {
-    std::vector<Rational> weights;  ///< of the cell's half-spaces
-    Vector ball_part;               ///< u
+    std::vector<Rational> weights;  ///< of the half-spaces of the cell, one each
+    Vector ball_part;               ///< the vector u of the text at the top
 };
 
 /// Returns whether a point lies in the cell, in the spot's sphere and in its cone, so that it proves that they meet.
@@ -99,7 +99,7 @@ public:
             holds_apex_ = holds_apex_ && at_apex >= 0;
             const Flat normal = flat(cell[i].a);
             const double size = length(normal);
-            // A half-space that is all or nothing has no direction; where it is nothing, its weight alone is the proof.
+            // A normal of length 0 makes a half-space everything or nothing; if nothing, its weight alone is a proof.
             if (size == 0)
                 faces_.push_back({{}, at_apex < 0 ? -HUGE_VAL : HUGE_VAL, 1});
             else
@@ -135,22 +135,22 @@ private:
         double x = 0, y = 0, z = 0;
     };
     struct Face {
-        Flat normal;    ///< into the cell, of length 1
-        double offset;  ///< how far inside of it the apex is
-        double size;    ///< of the normal as it is given
+        Flat normal;    ///< points into the cell, has length 1
+        double offset;  ///< distance of the apex from this side, positive inside
+        double size;    ///< length of the normal as it was given
     };
-    /// Two faces of a slab, without rounding opposite to each other.
+    /// Two parallel sides of a cell that face each other.
     struct Opposites {
         std::size_t one, other;
-        bool flat;  ///< nothing but a plane is between them
+        bool flat;  ///< both sides lie in one plane
     };
     struct Weight {
         std::size_t face;
         double weight;
     };
     using Weights = std::vector<Weight>;
-    /// How far the spot reaches in a direction n, and the part of n along which the cone does not reach at all, as
-    /// -back axis + lateral  with the lateral part at right angles to the axis.
+    /// How far the spot reaches in a direction n. The part of n along which the cone does not reach is  -back axis +
+    /// lateral,  where lateral is at right angles to the axis.
     struct Support {
         double value, back;
         Flat lateral;
@@ -166,8 +166,8 @@ private:
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     }
 
-    /// The range, and where that is out of proportion to the cell and blurs it, the part of the spot that reaches as
-    /// far as its planes do.
+    /// The radii to search with: the range and, where that is far larger than the cell, one that just reaches beyond
+    /// the cell.
     std::vector<double> scales() const {
         std::vector<double> away;
         for (const Face& face : faces_)
@@ -202,7 +202,7 @@ private:
         return std::any_of(opposites_.begin(), opposites_.end(),
                            [](const Opposites& pair) { return pair.flat; });
     }
-    /// What two opposite faces weigh alike only makes the gap narrower, and cancels badly.
+    /// Subtracts the common part of the weights of two opposite sides: it adds nothing to the proof and loses digits.
     void cancel_opposites(Weights& weights) const {
         std::vector<double*> of(faces_.size());
         for (Weight& w : weights)
@@ -234,7 +234,7 @@ private:
             n = sum(n, scaled(faces_[w.face].normal, w.weight));
         return n;
     }
-    /// By how much a weighted sum of faces separates.
+    /// Returns the distance by which the weighted sum of a cell's sides separates the cell from the spot.
     double gap(const Weights& weights) const {
         double reach = 0;
         for (const Weight& w : weights)
@@ -260,8 +260,8 @@ private:
         for (std::size_t i = 0; i < cell_.size(); ++i)
             if (!by.weights[i].is_zero()) n = n + by.weights[i] * cell_[i].a;
         const Support reach = support(flat(n));
-        // No rounding at all where all of n is of one part. Else what is taken from it must be within the cone's
-        // bounds, so its part along the axis, of which multiples are exact, is made a little larger.
+        // If all of n lies in the cone's part or none does, no rounding matters. Else the part that is taken from n
+        // must surely stay within the cone's bounds, so its part along the axis is made a little larger.
         if (radius_ == 0 || (reach.back == 0 && length(reach.lateral) == 0)) {
             by.ball_part = n;
         } else {
@@ -272,8 +272,8 @@ private:
         return proves_apart(cell_, spot_, by);
     }
 
-    /// By the part of the axis that is in the cell, as all of the axis is in the cone. Without rounding: of a half
-    /// angle of 0 nothing but the axis is left, which often lies in a cell's side. Of that no question stays open.
+    /// Decides by the part of the axis inside the cell, without rounding. A cone of half angle 0 is nothing but its
+    /// axis, which often lies in a side of the cell; this leaves no such question open.
     std::optional<bool> by_axis() const {
         constexpr std::size_t none = static_cast<std::size_t>(-1);
         std::size_t first = none, last = none;
@@ -288,7 +288,7 @@ private:
         }
         const Rational axis2 = dot(spot_.axis, spot_.axis);
         if (last == none || from <= to) {
-            // In the middle of what is in the ball, which rounding may move, or where it begins, without rounding.
+            // The point to test: the middle of the part inside the ball, or without rounding where that part begins.
             const double end = std::min(last == none ? HUGE_VAL : nearly(to), radius_ / axis_length_);
             for (const Rational& at : {exact((nearly(from) + end) / 2), from})
                 if (proves_meeting(cell_, spot_, spot_.ball.centre + at * spot_.axis)) return true;
@@ -306,10 +306,9 @@ private:
         return proves_apart(cell_, spot_, by) ? std::optional(false) : std::nullopt;
     }
 
-    //--------------------------------------------------------------------------------------------------------
-    // What the search below never quite gets to, without rounding: cells that are nothing beside their distance, for
-    // which the cone's side is a plane; half angles a hair below 90 degrees, of which the cone is all but a half-space;
-    // and balls that touch.
+    // --------------------------------------------------------------------------------------------------------
+    // Cases that the search below never reaches, decided without rounding: cells that are tiny beside their distance,
+    // half angles just below 90 degrees, and balls that touch a cell.
 
     /// Calls visit(i, j, k) for three faces that meet in a point, until it returns true.
     template <class Visit> bool any_corner(Visit visit) const {
@@ -332,7 +331,7 @@ private:
         return Rational(-1) / volume *
                (a.b * cross(b.a, c.a) + b.b * cross(c.a, a.a) + c.b * cross(a.a, b.a));
     }
-    /// Weights of three faces that make a vector, if none is negative.
+    /// Returns the weights that make `sum` from the normals of three sides of the cell, if none is negative.
     std::optional<std::vector<Rational>> weights_of(const Vector& sum, std::size_t i, std::size_t j,
                                                     std::size_t k) const {
         const Flat n = flat(sum);
@@ -351,8 +350,8 @@ private:
         return weights;
     }
 
-    /// By faces whose weighted sum is the axis turned round. Where the apex is on those, they are enough together with
-    /// a little of one that it is beyond.
+    /// Looks for sides of the cell whose weighted normals add up to the negative axis. If the apex lies on these sides,
+    /// a small weight of a side that it is beyond completes the proof.
     bool apart_from_half_space() const {
         if (cosine_ > 0x1p-10) return false;
         return any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
@@ -385,7 +384,7 @@ private:
         return std::nullopt;
     }
 
-    /// By a corner of the cell, or the plane that touches the cone on the corners' side of it.
+    /// Tries a corner of the cell, or the plane that touches the cone on the side of the corners.
     std::optional<bool> by_corners() const {
         std::optional<Flat> some;
         if (any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
@@ -419,7 +418,7 @@ private:
     struct Slope {
         Four gradient{};
         std::array<Four, 4> hessian{};
-        /// Adds -log(value), which has these derivatives; the second one is constant.
+        /// Adds the barrier -log(value) of a value with these first and second derivatives; the second one is constant.
         void add(double value, const Four& first, const std::array<Four, 4>& second) {
             for (std::size_t i = 0; i < 4; ++i) {
                 gradient[i] -= first[i] / value;
@@ -449,7 +448,7 @@ private:
         return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return slack(f, at) > 0; });
     }
 
-    /// Whether a point lies inside of the light and of the cell, not counting the planes that it lies in.
+    /// Returns whether a point lies inside the light and the cell, where sides that contain the point are not counted.
     bool inside_but_for_planes(Four at) const {
         at[3] = 0;
         if (!(ball_value(at) > 0) || !(side_value(at) > 0)) return false;
@@ -489,7 +488,7 @@ private:
         return s;
     }
 
-    /// hessian step = -gradient, by Cholesky's method; false: not positive definite.
+    /// Solves  hessian step = -gradient  by Cholesky's method; returns false if the matrix is not positive definite.
     static bool solve(const Slope& s, Four& step) {
         std::array<Four, 4> l{};
         for (std::size_t i = 0; i < 4; ++i)

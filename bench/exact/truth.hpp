@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether balls meet parts of a camera's image: by the filter where it has an answer, else by rationals.
+// Whether balls meet parts of a camera's image: in double precision if that is certain, else by rational numbers.
 #pragma once
 
 #include "filter.hpp"
@@ -17,8 +17,8 @@ struct Block {
     bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
 
-/// All questions about one camera. Depths and balls are given in double, and by functions that return the same in
-/// rationals, which are called where they are needed.
+/// Answers all questions about one camera. Depths and balls come in double precision, together with functions that
+/// return them as rationals if those are needed.
 class Truth {
 public:
     explicit Truth(const Camera& camera) : oracle(camera), range(oracle.range()), filter(oracle) {}
@@ -33,8 +33,8 @@ public:
         });
     }
 
-    /// What a rectangle tests, one image axis at a time: the wedge of whole columns (rows) of tiles, from the near to the
-    /// far plane.
+    /// Whether a ball meets the wedge of space that whole columns (or rows) of tiles show, from near to far plane: the
+    /// test behind a light's rectangle of tiles.
     template <class ExactBall>
     bool meets_columns(int x0, int x1, const FlatBall& ball, ExactBall exact_ball) {
         return x0 < x1 && settle(filter.meets_columns(x0, x1, range, ball), [&] {
@@ -47,7 +47,7 @@ public:
         });
     }
 
-    /// The answer in double precision, or where there is none, and now and then as a check, the exact one.
+    /// Returns the answer of double precision, else the exact one, which now and then also checks the former.
     template <class Exact> bool settle(std::optional<bool> proven, Exact exact) {
         const bool checked = ++questions_ % 1009 == 0;
         by_rationals_ += !proven;
@@ -57,7 +57,7 @@ public:
         return truth;
     }
 
-    /// Questions that double precision left open.
+    /// Returns how many questions were decided by rational numbers.
     std::uint64_t by_rationals() const { return by_rationals_; }
 
     Slab columns(int x0, int x1) const { return oracle.column_slab(oracle.columns(x0, x1)); }

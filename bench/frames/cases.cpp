@@ -37,7 +37,7 @@ Camera look(const std::string& name, glm::dvec3 from, glm::dvec3 to, glm::dvec3 
     return camera;
 }
 
-// How far it is from a place straight up (or down: -1) to the first surface. Infinity: there is none.
+// Returns the distance straight up (`up` is 1) or down (-1) to the first triangle; infinity if there is none.
 double room(const std::vector<Vertex>& triangles, const glm::dvec3& from, double up) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
@@ -52,8 +52,8 @@ double room(const std::vector<Vertex>& triangles, const glm::dvec3& from, double
     return nearest;
 }
 
-// Looks straight down from under the ceiling, where that is highest over the floor of all the places that have both, and of
-// equals nearest to the middle. Nothing, if most places have no ceiling.
+// Returns a camera that looks straight down from the highest ceiling over any of the places, nearest to the middle if
+// several are as high. Nothing, if most places have no ceiling.
 std::optional<Camera> under_a_ceiling(const Scene& scene, const std::vector<Camera>& places,
                                       const glm::dvec3& middle) {
     double highest = 0, nearest = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What both techniques have that add up one light after another.
+// What the two deferred techniques that draw one light after another have in common.
 #pragma once
 
 #include "passes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// DeferredStencil (Tiled Shading, section 6.3; Arvo, Aila 2003): as Deferred, but a light's ball first marks the pixels
-// whose surface is in it, and only those are lit.
+// DeferredStencil (Tiled Shading, section 6.3; Arvo, Aila 2003): like Deferred, but a light's sphere first marks the
+// pixels whose surface lies in it, and only those are lit.
 #include "deferred.hpp"
 #include "technique.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A copy, as what is tested against can't be read.
+// Copies the depth buffer, because a shader cannot read the one that is tested against.
 GLuint copy_depth(Stage& stage, GLuint from) {
     const GLuint to = stage.target("depth and stencil", GL_DEPTH32F_STENCIL8);
     const GLuint source = stage.memory.framebuffer({}, from), target = stage.memory.framebuffer({}, to);
@@ -23,8 +23,8 @@ GLuint copy_depth(Stage& stage, GLuint from) {
     return to;
 }
 
-// A surface is in the ball if it is before the ball's back and not before its front: the back's count is then not
-// taken away by the front's.
+// Counts in the stencil: the back of the light's sphere adds one where it lies behind the surface, and the front takes
+// one away where it does. What remains marks surfaces inside the sphere.
 void mark(const Stage& stage) {
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -35,7 +35,7 @@ void mark(const Stage& stage) {
     stage.geometry.draw_ball();
 }
 
-// Lights what is marked, and takes the marks away.
+// Lights the marked pixels, and removes their marks.
 void light_marked(const Stage& stage) {
     glDisable(GL_DEPTH_TEST);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

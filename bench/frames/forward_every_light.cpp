@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every fragment is lit by every light: the picture that all others are held against.
+// Every fragment is lit by every light. This is the reference picture for all other techniques.
 #include "passes.hpp"
 #include "technique.hpp"
 
@@ -9,7 +9,7 @@
 
 Technique forward_every_light() {
     return {"Forward with every light", [](Stage& stage) {
-                // Mesa's software renderer ends longer loops, and says nothing.
+                // Mesa's software renderer silently ends loops that are longer than this.
                 if (const std::size_t lights = stage.lights().size(); lights > 65000)
                     throw std::runtime_error("a fragment would loop over " + std::to_string(lights) +
                                              " lights, and some drivers end a loop after 65,535");

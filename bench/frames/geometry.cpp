@@ -10,7 +10,7 @@
 
 namespace {
 
-// A ball of triangles that holds the unit ball: an icosahedron, each triangle cut in four twice.
+// Returns a mesh that encloses the unit sphere: an icosahedron with each triangle divided into four, twice.
 std::vector<glm::vec3> ball() {
     const float golden = (1 + std::sqrt(5.0f)) / 2;
     std::vector<glm::vec3> tops;
@@ -37,7 +37,7 @@ std::vector<glm::vec3> ball() {
             corners.insert(corners.end(), {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca});
         }
     }
-    // The triangles cut into the ball: make it larger until they don't.
+    // The middles of triangles lie inside the sphere: the mesh is enlarged until they do not.
     float inside = 1;
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         const glm::vec3 normal = glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]);

@@ -10,16 +10,16 @@
 #include <cstddef>
 #include <vector>
 
-/// Attributes: 0 position, 1 normal, 2 colour. Needs a current OpenGL context, and leaves its
-/// objects to it.
+/// Vertex attribute 0 is the position, 1 the normal, 2 the colour. Needs a current OpenGL context, which owns the
+/// objects that it makes.
 class Geometry {
 public:
     explicit Geometry(const Scene& scene);
 
     void draw_opaque() const;
-    void draw_everywhere() const;              ///< a triangle over the picture, made of vertex numbers
-    void draw_quads(std::size_t count) const;  ///< so many instances of four vertices, made of their numbers
-    void draw_ball() const;                    ///< holds the unit ball, which fills most of it; attribute 0
+    void draw_everywhere() const;              ///< one triangle over the whole picture, without vertex data
+    void draw_quads(std::size_t count) const;  ///< `count` instances of four vertices, without vertex data
+    void draw_ball() const;                    ///< a mesh around the unit sphere, as attribute 0
 
 private:
     GLuint opaque_array_ = 0, ball_array_ = 0;

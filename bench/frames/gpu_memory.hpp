@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// Places that shaders read from; set_samplers() binds each sampler of that name to one.
+/// Texture units of the shaders. set_samplers() sets each sampler with one of these names to its unit.
 enum Unit : GLuint {
     unit_tiles,
     unit_lists,
@@ -29,27 +29,27 @@ enum Unit : GLuint {
 };
 void set_samplers(GLuint program);
 
-/// Throws std::runtime_error with one line where a target can't be had.
+/// Throws std::runtime_error with one line if OpenGL cannot make a texture to draw to.
 class GpuMemory {
 public:
     /// Frees everything.
     void clear();
     std::size_t bytes() const;
 
-    /// A texture to draw to and read from; made if there is none of that name since clear().
+    /// Returns a texture of this name to draw to and read from. It is made if there is none since clear().
     GLuint target(const std::string& name, GLenum format, int width, int height);
     void read_from(Unit unit, GLuint target);
-    /// Binds a framebuffer of these for drawing and reading; depth 0: none.
+    /// Binds a framebuffer with these textures for drawing and reading; depth 0 means no depth buffer.
     void draw_to(std::initializer_list<GLuint> colours, GLuint depth);
     GLuint framebuffer(std::initializer_list<GLuint> colours, GLuint depth);
 
-    /// A buffer of these bytes; in place of what it held, if there is one of that name.
+    /// Returns a buffer of this name with these bytes, which replace what it held.
     GLuint buffer(const std::string& name, std::size_t bytes, const void* data);
     template <class Range> GLuint buffer(const std::string& name, const Range& range) {
         const std::span data(range);
         return buffer(name, data.size_bytes(), data.data());
     }
-    /// Shaders read the bytes of a buffer() at the unit, as texels of that format.
+    /// Binds a buffer() as a buffer texture of this format to a texture unit.
     void read_texels(Unit unit, GLenum format, GLuint buffer);
 
 private:

@@ -51,8 +51,8 @@ int run(Arguments arguments) {
     {
         const OffscreenContext context(0);
         const bool software = is_software_renderer();
-        // Tiles have the share of the picture that 32 pixels have of 1920: what lies between a tile's nearest and farthest
-        // surface grows with it.
+        // Fewer pixels have smaller tiles, so that a tile covers the same share of the picture as 32 pixels of 1920:
+        // the range of depth in a tile depends on that.
         run.width = !software ? 1920 : quick ? 240 : 480;
         run.height = run.width * 9 / 16;
         run.tile_size = run.width / 60;

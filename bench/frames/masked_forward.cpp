@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Forward with a mask for each column of tiles and each row in place of lists; with z-bins a fragment looks only at the
-// words of the lights at its depth. No pre-pass.
+// Forward shading with a bit mask of lights for each column and each row of tiles in place of lists; with z-bins a
+// fragment reads only the words with lights at its depth. No depth pre-pass.
 #include "passes.hpp"
 #include "technique.hpp"
 

@@ -10,32 +10,32 @@
 #include <cstdint>
 #include <vector>
 
-/// The picture and its depth, cleared and bound.
+/// Clears and binds the picture and its depth buffer.
 void begin_picture(Stage& stage);
 /// Depth alone, of the opaque surfaces.
 void depth_pre_pass(Stage& stage);
-/// Lights opaque surfaces as they are drawn.
+/// Draws the opaque surfaces and lights each fragment as it is drawn.
 void shade_forward(Stage& stage, const LightLookup& lights);
 
 /// A target of the G-buffer's width.
 GLuint surface_target(Stage& stage, const char* name);
-/// Surfaces to four of them; `depth`: a target.
+/// Draws surfaces to the four textures of the G-buffer and to the depth texture `depth`.
 void fill_g_buffer(Stage& stage, GLuint depth);
 void read_g_buffer(Stage& stage, GLuint depth);
-/// Lights the G-buffer's pixels, each once.
+/// Lights each pixel of the G-buffer once.
 void shade_deferred(Stage& stage, const LightLookup& lights);
 
-/// Z bounds from the depth target, in memory of their own.
+/// The least and greatest depth in each tile, made from the depth texture.
 class DepthBounds {
 public:
-    /// By lightbin::reduce_shader(), reading back two depths a tile.
+    /// Runs the shader of lightbin::reduce_shader() and reads back two depths for each tile.
     lightbin::ZBounds reduce(Stage& stage);
 
 private:
     std::vector<float> depth_, min_, max_;
 };
 
-/// Lists by the papers' depth test: of a tile's lights those whose depths, from nearest to farthest, meet its Z bounds.
+/// Lists by the papers' depth test: a tile's list has the lights whose depths overlap the depths drawn in the tile.
 class IntervalLists {
 public:
     /// Valid until the next call.
@@ -47,9 +47,9 @@ private:
     std::vector<std::uint32_t> ids_;
 };
 
-/// The lists, for the shaders of listed_lights().
+/// Uploads the lists to the buffers that the shaders of listed_lights() read.
 void upload_lists(Stage& stage, const lightbin::LightGrid<std::uint32_t>& grid);
-/// The slices, and the bins of lists of ranks.
+/// Uploads the depth slices and, for lists of ranks, the range of ranks in each slice.
 void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks);
 /// As deep as any light reaches.
 float depth_of_lights(const Stage& stage);

@@ -26,7 +26,7 @@ template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& 
 
 constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
 
-// Whether to draw a path with few lights, too, which go through the many in their order.
+// Whether a camera path is also drawn with few lights, which move along the positions of the scene's many lights.
 enum class FewLights { no, along_a_path };
 
 void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views,
@@ -52,7 +52,7 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
         if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
 }
 
-// Techniques are compared by what they do with points; what a file has of other lights is no matter.
+// Adds the scene of a file. Spots become points and other lights are left out: techniques are compared on points.
 void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick) {
     Scene scene = load_glb(file, 0.05f);
     scene.suns.clear();
@@ -63,7 +63,7 @@ void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick)
         std::printf("%s: %s left out\n", scene.name.c_str(),
                     counted(orthographic, "orthographic view").c_str());
     if (scene.cameras.empty()) scene.cameras = {framing_camera(scene.triangles)};
-    // The robots' lights are in the order of the robots' paths.
+    // The scene's robots carry these lights, which are in the order of the robots' paths.
     add_scene(plan, scene, scene.cameras, FewLights::along_a_path, quick);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is drawn: scenes, the views of each, and the techniques for each view.
+// What is drawn: scenes, their cameras, and the techniques for each camera.
 #pragma once
 
 #include "settings.hpp"
@@ -16,10 +16,10 @@ struct Job {
     Camera camera;
     std::vector<Technique> techniques;
     Settings settings;
-    std::vector<Light> lights = {};  ///< in place of the scene's, where there are any
+    std::vector<Light> lights = {};  ///< if not empty, they replace the scene's lights
 };
 
-/// The table of lists and masks by number of lights.
+/// Name of the table that compares lists and masks by number of lights.
 inline constexpr const char* lists_and_masks = "lists and masks";
 
 struct SceneJobs {
@@ -27,7 +27,7 @@ struct SceneJobs {
     std::vector<Job> jobs;
 };
 
-/// Returns the made scene's views and those of the files', of some of them only if it is to be quick. Spot lights become
-/// points, directional lights and orthographic views are left out. Throws
-/// std::runtime_error with one line if a file can't be read.
+/// Returns the jobs of the generated scene and of the files; `quick` takes fewer views. Spots become points;
+/// directional lights and orthographic cameras are left out. Throws std::runtime_error with one line if a file can't be
+/// read.
 std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick);

@@ -57,7 +57,7 @@ double percent_different(const Row& row) {
     return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
 }
 
-/// The least time in which surfaces were drawn and lit, in milliseconds; 0 if their depth was drawn before.
+/// Returns the least milliseconds of the pass that draws and lights surfaces; 0 if their depth was drawn before.
 double shading(const Row& row) {
     if (row.passes.empty() || row.passes.front().first != "bin") return 0;
     return row.passes.back().second.least;
@@ -69,7 +69,7 @@ double sum(const std::vector<Row>& rows, double (*value)(const Row&)) {
     return all;
 }
 
-/// A row a technique: means over the views, in brackets the least and the most. Of one view, those of its frames.
+/// Returns a table row for each technique: means, and in brackets least and greatest, over views or a view's frames.
 std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
     std::vector<TableRow> table = {{"", "ms", "million evaluations", "MB", "differs", "shading", "words"}};
     double of_lists = 0;
@@ -123,7 +123,7 @@ void print_price_of_words(const std::vector<Row>& all) {
             if (row.table == lists_and_masks && row.technique == technique) rows.push_back(row);
         return rows;
     };
-    // From the fewest lights to the most a view has the same fragments, and nothing takes longer but the evaluations.
+    // Views with fewer lights draw the same fragments, so the difference in time is that of the light evaluations.
     const std::vector<Row> lists = of("TiledForward");
     double time = 0, evaluations = 0;
     for (const auto& [view, by_lights] : grouped(lists, &Row::view)) {

@@ -8,11 +8,11 @@
 
 /// Prints a table for each scene and kind of view.
 void print_rows(const std::vector<Row>& rows);
-/// Prints what a word of masks takes beside a light evaluation: the report's price of a word is from here.
+/// Prints how long a shader takes for one word of masks, in light evaluations. bench/report.cpp uses that price.
 void print_price_of_words(const std::vector<Row>& rows);
 
 /// Writes frames.csv, a line a row.
 void write_csv(const std::vector<Row>& rows);
 
-/// Writes frames_paths.csv, the evaluations and times along cameras' paths, for the plots.
+/// Writes frames_paths.csv: light evaluations and times along camera paths, for the plots.
 void write_paths(const std::vector<Row>& rows);

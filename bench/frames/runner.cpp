@@ -57,7 +57,7 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
         left_out_.say(scene_.name + ", " + camera.name, problem.what());
         return {};
     }
-    // The reference takes long. One frame will do, and a CPU's time for it is of no interest.
+    // Lighting every fragment by every light takes long, so one frame is drawn; on a software renderer it is not timed.
     add_row(every_light_, is_software_renderer() ? 0 : 1);
     if (rows.empty()) return {};
     for (const Technique& technique : techniques)
@@ -79,7 +79,7 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
         technique.draw(stage_);
         return stage_.end();
     };
-    // The first frame makes the targets, and the first of a technique the programs, too.
+    // The first frame of each technique also compiles its programs and makes its textures, so it is not timed.
     const bool can_count = stage_.glsl() >= 430;
     draw_once(can_count);
     if (can_count) row.evaluations = stage_.evaluations(), row.words = stage_.words();

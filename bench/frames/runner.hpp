@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws techniques' frames of a scene, and measures them.
+// Draws the frames of a scene by each technique, and measures them.
 #pragma once
 
 #include "stage.hpp"
@@ -13,23 +13,23 @@
 #include <utility>
 #include <vector>
 
-/// Milliseconds of some frames. 0: they were not timed.
+/// Times of several frames in milliseconds; 0 if they were not timed.
 struct Times {
     double median = 0, least = 0, most = 0;
 };
 
 /// What was measured of one technique in one view.
 struct Row {
-    std::string table, scene, view, technique;  ///< a technique's name has the bits of its G-buffer
+    std::string table, scene, view, technique;  ///< the technique's name includes the bits of its G-buffer
     std::size_t lights = 0;
-    std::uint64_t evaluations = 0, words = 0;  ///< 0: this OpenGL can't count
+    std::uint64_t evaluations = 0, words = 0;  ///< 0 if this OpenGL can't count
     Times frame;
     std::vector<std::pair<std::string, Times>> passes;
     std::size_t bytes = 0;
     std::size_t pixels = 0;
-    std::size_t different = 0;  ///< pixels that are not the reference's
-    int difference = 0;         ///< the largest of a colour, of 255
-    bool as_stated = true;      ///< it is no larger than the technique's tolerance
+    std::size_t different = 0;  ///< pixels that differ from the reference picture
+    int difference = 0;         ///< largest difference of a colour component, of 255
+    bool as_stated = true;      ///< the difference is within the technique's tolerance
 };
 
 /// What the run asks of all frames.
@@ -38,7 +38,7 @@ struct RunSettings {
     int timed_frames = 3;
 };
 
-/// What is left out, and why: a line each, said once.
+/// Messages about what is not drawn, and why; each is printed once.
 class LeftOut {
 public:
     void say(const std::string& who, const std::string& why);
@@ -53,7 +53,7 @@ class Runner {
 public:
     Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOut& left_out);
 
-    /// Draws a view by every technique, after the reference. Settings that the techniques don't set are as given.
+    /// Draws a view by every technique, after the reference picture, with these settings where a technique has none.
     std::vector<Row> run(const std::string& table, const Camera& camera,
                          const std::vector<Technique>& techniques, Settings wanted);
     /// The picture of the last run, RGBA.

@@ -156,7 +156,7 @@ std::string Shaders::head() const {
 
 namespace {
 
-// A fragment shader that lights must run on what is seen only, or it counts what is hidden.
+// Early depth tests: without them, a shader that counts evaluations also counts those of hidden fragments.
 const char* const seen_only = R"(
 #ifdef COUNT
 layout(early_fragment_tests) in;

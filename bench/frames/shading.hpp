@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The texts of the shaders: one surface, one function that lights it, however its lights are found.
+// Writes the shaders' texts: one surface and one lighting function for all techniques, however lights are found.
 #pragma once
 
 #include "settings.hpp"
@@ -10,8 +10,8 @@
 
 /// How a technique's shaders find the lights of a surface.
 struct LightLookup {
-    /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id; with masks also
-    /// MASKS.
+    /// Defines the macro each_light(light, pixel, view_depth), which stands before a statement that reads light.id; if
+    /// it reads masks, also the macro MASKS.
     std::string text;
 };
 LightLookup every_light();
@@ -22,8 +22,8 @@ class Shaders {
 public:
     Shaders(int glsl, const Settings& settings) : glsl_(glsl), settings_(settings) {}
 
-    std::string surface_vertex() const;     ///< of triangles in world space
-    std::string everywhere_vertex() const;  ///< of a triangle over the picture
+    std::string surface_vertex() const;     ///< for triangles in world space
+    std::string everywhere_vertex() const;  ///< for one triangle over the picture
     std::string depth_fragment() const;
 
     /// Lights what it draws.
@@ -34,16 +34,16 @@ public:
     /// Lights a pixel of the G-buffer.
     std::string deferred_fragment(const LightLookup& lights) const;
 
-    /// One light after another, added up in radiance_texture: the ambient light, one light, and what is shown.
+    /// Fragment shaders that add up radiance_texture light by light: ambient, one light, and the final colours.
     std::string ambient_fragment() const;
     std::string one_light_fragment() const;
     std::string show_fragment() const;
-    /// Of rectangles around the footprints, an instance each; and of balls around the lights, one at a time.
+    /// Vertex shaders for an instance of a rectangle around each light's pixels, and for a sphere around one light.
     std::string rectangle_vertex() const;
     std::string ball_vertex() const;
 
 private:
-    std::string head() const;  ///< the version, and what the settings say
+    std::string head() const;  ///< the version line, and macros for the settings
 
     int glsl_;
     Settings settings_;

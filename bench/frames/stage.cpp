@@ -89,8 +89,8 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
     lap("");
 }
 
-// Clocks are the GPU's. The flush has it read them when what came before is done, not when more work comes. A software
-// renderer reads them earlier than that, but there is no harm in waiting for it.
+// Times are read from the GPU's clock. The flush makes it read the clock when the work before it is done, not when more
+// work comes. A software renderer reads it too early, so it is waited for.
 void Stage::lap(const char* pass) {
     if (laps_.size() == clocks_.size()) glGenQueries(1, &clocks_.emplace_back());
     if (software_) glFinish();

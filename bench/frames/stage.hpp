@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all techniques draw with: the scene, the frame's view and lights, programs, targets and a clock.
+// What all techniques draw with: scene, view and lights of a frame, shader programs, textures to draw to, a clock.
 #pragma once
 
 #include "geometry.hpp"
@@ -27,10 +27,10 @@ struct Pass {
     double milliseconds;
 };
 
-/// Whether OpenGL draws on the CPU. Its times say little about a GPU's.
+/// Returns whether OpenGL draws on the CPU, whose times say little about a GPU.
 bool is_software_renderer();
 
-/// A light in view: its tiles, ends included, and its least and greatest view depth. Shaders read it as two uvec4.
+/// The tiles that a light covers, first and last included, and its least and greatest view depth, as two uvec4.
 struct LightFootprint {
     std::uint32_t id;
     std::uint16_t x0, y0, x1, y1;
@@ -39,39 +39,39 @@ struct LightFootprint {
 };
 static_assert(sizeof(LightFootprint) == 32);
 
-/// Throws std::runtime_error with one line on everything that this OpenGL can't do.
+/// All functions throw std::runtime_error with one line if this OpenGL lacks what they need.
 class Stage {
 public:
-    /// Needs a current OpenGL context, of this GLSL version, and leaves its objects to it.
+    /// Needs a current OpenGL context of this GLSL version, which owns the objects that it makes.
     Stage(const Scene& scene, int glsl);
 
     Geometry geometry;
     GpuMemory memory;
 
-    /// Sets what others drew with back to how a context begins.
+    /// Resets the OpenGL state that others changed to that of a new context.
     static void reset_state();
     /// Sets the camera, the lights and the settings of a frame.
     void begin(const Camera& camera, const Settings& settings);
-    /// Ends a pass: all that was done since the last one, by the CPU and the GPU.
+    /// Ends a pass: takes the time of all work on the CPU and the GPU since the last call.
     void lap(const char* pass);
-    /// Waits for the frame. Returns its passes, those of one name as one.
+    /// Waits for the frame's end and returns its passes; passes of the same name are added up.
     std::vector<Pass> end();
-    /// If they were counted: light evaluations, and words of masks that fragments went through.
+    /// Returns, if they were counted, the light evaluations and the words of masks that fragments read.
     std::uint64_t evaluations() const { return counted(0); }
     std::uint64_t words() const { return counted(1); }
 
     int glsl() const { return glsl_; }
     const Settings& settings() const { return settings_; }
     Shaders shaders() const { return {glsl_, settings_}; }
-    lightbin::View view(int tile_size = 0) const;  ///< 0: that of the settings
-    /// In view space, in the order in which they begin in depth: so ids and ranks in depth ascend together.
+    lightbin::View view(int tile_size = 0) const;  ///< a tile size of 0 means the settings' tile size
+    /// Returns the lights in view space, sorted by the depth where they begin: ids are then ranks in depth.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
-    /// Returns the footprints of the lights in view, by ascending id. Tile size 0 stands for the settings' tile size.
+    /// Returns tiles and depths of the lights in view, by ascending id. A tile size of 0 means the settings' tile size.
     std::vector<LightFootprint> footprints(int tile_size = 0) const;
-    /// Hands the shaders these lights in this order: for lists of ranks.
+    /// Uploads the lights in this order, for lists of ranks in depth.
     void order_lights(std::span<const std::uint32_t> order);
 
-    /// Makes a program, once, and takes it into use. It reads the frame's view and its own units.
+    /// Compiles a program, if it is not known yet, and binds it together with the constants of the frame.
     GLuint use(const std::string& vertex, const std::string& fragment);
 
     /// Targets of the frame's size.

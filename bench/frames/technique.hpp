@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-/// Draws one frame on a stage, pass by pass, so that its picture is in Stage::drawn().
+/// Draws one frame on a stage, pass by pass. Afterwards Stage::drawn() is the picture.
 struct Technique {
     std::string name;
     std::function<void(Stage&)> draw;
-    int tolerance = 0;      ///< by which a colour may differ from the reference's, of 255
-    int g_buffer_bits = 0;  ///< a component; 0: it has no G-buffer
+    int tolerance = 0;      ///< allowed difference of a colour component from the reference, of 255
+    int g_buffer_bits = 0;  ///< for each component; 0 if it has no G-buffer
 };
 
-Technique forward_every_light();  ///< the reference
+Technique forward_every_light();  ///< every fragment by every light: the reference picture
 Technique tiled_forward();
 
 enum class ZEnds { none, min, max, both };
 Technique tiled_forward_pre_z(ZEnds ends);
-Technique tiled_forward_box();  ///< both, and the library's box test
+Technique tiled_forward_box();  ///< minimum and maximum depth, and the library's box test
 
 Technique tiled_deferred(int g_buffer_bits);
 Technique deferred(int g_buffer_bits);
@@ -29,9 +29,9 @@ Technique deferred_stencil(int g_buffer_bits);
 
 Technique clustered_forward();
 Technique z_binned_forward();
-Technique masked_forward(lightbin::Slicing slicing);  ///< none, z_bins
+Technique masked_forward(lightbin::Slicing slicing);  ///< without depth slices, or with z-bins
 
-/// Plain tiles, and what needs no depth before it shades either.
+/// Returns plain tiles, and the techniques that need no depth before they shade, either.
 std::vector<Technique> without_pre_pass();
-/// All that draw opaque surfaces, but the reference.
+/// Returns all techniques that draw opaque surfaces, except the reference.
 std::vector<Technique> every_technique();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TiledDeferred (Tiled Shading, sections 6.1 and 6.3): surfaces to a G-buffer, then each pixel once, with the list of its
-// tile. The grid is made on the CPU, from Z bounds that the GPU made.
+// TiledDeferred (Tiled Shading, sections 6.1 and 6.3): draws surfaces to a G-buffer, then lights each pixel once with
+// its tile's list. Lists are made on the CPU, from each tile's least and greatest depth, which the GPU finds.
 #include "passes.hpp"
 #include "technique.hpp"
 

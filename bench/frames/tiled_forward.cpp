@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// TiledFwd (Tiled Shading, section 6.1): each fragment as it comes, with the list of its tile.
+// TiledFwd (Tiled Shading, section 6.1): lights each fragment as it is drawn, with the list of its tile.
 #include "passes.hpp"
 #include "technique.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TiledFwd-PreZ (Tiled Shading, section 6.3; Tiled Forward Shading, section 4.4): depth first, so that each pixel is shaded
-// once, and lights out of what a tile has in depth are not in its list.
+// TiledFwd-PreZ (Tiled Shading, section 6.3; Tiled Forward Shading, section 4.4): draws depth first, so that each pixel
+// is shaded once and a tile's list leaves out lights that are not at the depths drawn there.
 #include "passes.hpp"
 #include "technique.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Z-binned forward (Drobot, SIGGRAPH 2017): tiles' lists of lights in order of depth, of which a fragment takes those
-// of its depth's bin; no pre-pass.
+// Z-binned forward (Drobot, SIGGRAPH 2017): a tile's list is sorted by depth, and a fragment evaluates only the lights
+// that meet its depth interval (bin). No depth pre-pass.
 #include "passes.hpp"
 #include "technique.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The GPU's lists against the Binner's, light by light.
+// Compares the lists that the GPU made with the Binner's, light by light.
 #pragma once
 
 #include "gpu_build.hpp"
@@ -16,9 +16,9 @@
 
 struct Difference {
     std::size_t entries = 0;    ///< of the Binner
-    std::size_t missed = 0;     ///< of them, those that the GPU lacks
-    std::size_t more = 0;       ///< entries of the GPU alone
-    std::size_t unordered = 0;  ///< ids that do not ascend, and lists that do not begin where another ends
+    std::size_t missed = 0;     ///< entries of the Binner that the GPU lacks
+    std::size_t more = 0;       ///< entries that only the GPU has
+    std::size_t unordered = 0;  ///< ids that do not ascend, and lists that do not begin where the one before ends
 
     bool right() const { return missed == 0 && unordered == 0; }
     Difference& operator+=(const Difference& other) {

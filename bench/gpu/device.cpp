@@ -41,7 +41,7 @@ double GpuDevice::write(const std::string& name, std::span<const std::byte> byte
 }
 
 std::vector<std::uint32_t> GpuDevice::read(const std::string& name, std::size_t words) {
-    // By way of a copy: some drivers move a buffer that is read to the processor's memory, and then it stays there.
+    // Reads by way of a copy: some drivers move a buffer that is read to the processor's memory, where it then stays.
     const auto size = static_cast<GLsizeiptr>(4 * words);
     std::vector<std::uint32_t> read(words);
     GLuint copy = 0;
@@ -90,8 +90,8 @@ std::vector<double> GpuDevice::run(bool each_pass) {
     return milliseconds;
 }
 
-/// Has the GPU note the time when it has done what came before. A software renderer notes it earlier than that, so
-/// it is waited for.
+/// Has the GPU note the time when the work before this call is done. A software renderer notes it too early, so it is
+/// waited for.
 void GpuDevice::clock(std::size_t i) {
     while (clocks_.size() <= i)
         glGenQueries(1, &clocks_.emplace_back());

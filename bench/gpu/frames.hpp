@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The lights of which lists are made: those of the field sets, in view space, and Bevy's many_lights, in world space.
+// The lights that lists are made of: random ones in view space (bench/sets.hpp), Bevy's many_lights in world space.
 #pragma once
 
 #include "../lens.hpp"
@@ -14,16 +14,16 @@
 #include <string>
 #include <vector>
 
-/// Lights of one frame. Those in world space stay on the GPU, as they are the same in all frames.
+/// The lights of one frame. Lights in world space are the same in all frames, so they stay on the GPU.
 struct GpuFrame {
     Lens lens;
     Lights lights;
-    std::optional<glm::mat4> to_view;  ///< of lights in world space
+    std::optional<glm::mat4> to_view;  ///< the view matrix, if lights are in world space
 };
 
 struct LightSource {
     std::string name;
-    float reach;  ///< the depth that slices divide
+    float reach;  ///< the greatest depth, up to which slices reach
     std::vector<GpuFrame> frames;
 };
 

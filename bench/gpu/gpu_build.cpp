@@ -22,8 +22,8 @@ lightbin::CullPlan plan_of(const GpuFrame& frame, const lightbin::View& view,
         lightbin::plan_cull(view, options, room, slices ? &*slices : nullptr, to_view ? &*to_view : nullptr));
 }
 
-/// What the depth test reads: the interval of each tile, or with clusters of each slice; for boxes the tiles' edges
-/// behind them.
+/// Returns the depths that the depth test reads: the interval of each tile, or with clusters of each slice. For the box
+/// test the tiles' edges follow.
 std::vector<lightbin::ShaderEdges> depths_of(const lightbin::View& view, const lightbin::Options& options,
                                              const lightbin::Slices* slices,
                                              const lightbin::ZBounds& bounds) {

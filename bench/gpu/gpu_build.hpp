@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The passes of shader_cull on a device, with all buffers that they take.
+// Runs the passes of shader_cull on a device, with all buffers that they need.
 #pragma once
 
 #include "device.hpp"
@@ -26,16 +26,16 @@ struct ReadLists {
 /// The lists that masks stand for.
 ReadLists lists_of(const lightbin::LightMasks& masks);
 
-/// Builds of frames that have the lens and the number of lights of the first one.
+/// Builds lists on the GPU. All frames must have the lens and the number of lights of the first one.
 class GpuBuild {
 public:
-    /// masks   in place of lists
-    /// bounds  as the options' depth test reads them, or empty
+    /// masks   whether it makes masks in place of lists
+    /// bounds  the depths that the options' depth test reads, or empty
     GpuBuild(GpuDevice& device, const lightbin::Options& options, bool masks, int tile_size,
              const GpuFrame& first, std::uint32_t entries, const lightbin::Slices* slices,
              const lightbin::ZBounds& bounds);
 
-    /// Writes what changes from frame to frame: constants, and lights in view space. Returns milliseconds.
+    /// Uploads what changes between frames: constants, and lights in view space. Returns milliseconds.
     double upload(const GpuFrame& frame);
     /// See GpuDevice::run().
     std::vector<double> run(bool each_pass) { return device_.run(each_pass); }

@@ -49,7 +49,7 @@ private:
     }
 
     void measure_source(LightSource source, bool with_bounds) {
-        // Where a build takes seconds, one of each will do.
+        // Where a single build takes seconds, one frame is enough.
         if (device_.is_software() && source.frames.front().lights.size() >= 100000) source.frames.resize(1);
         measure_tiles(source);
         if (with_bounds) measure_one<Options{.depth_test = true}>(source, "box, 16 px", 16);

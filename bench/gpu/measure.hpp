@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Builds on the CPU and on the GPU in turns.
+// Times builds on the CPU and on the GPU, which take turns.
 #pragma once
 
 #include "compare.hpp"
@@ -24,26 +24,26 @@
 struct GpuRow {
     std::string device, source, method;
     std::size_t lights = 0, in_view = 0;
-    double cpu_ms = 0, cpu_upload_ms = 0;  ///< medians, as all times; one core
+    double cpu_ms = 0, cpu_upload_ms = 0;  ///< medians, like all times here; on one core
     double gpu_ms = 0, gpu_upload_ms = 0;
-    std::vector<std::pair<std::string, double>> passes;  ///< milliseconds of each pass of the GPU
+    std::vector<std::pair<std::string, double>> passes;  ///< median milliseconds of each pass
     std::size_t scratch = 0;                             ///< bytes
     Difference difference;
 };
 
-/// How many turns are timed, and how many are made before them: a GPU that was idle takes its time to get fast.
+/// How many turns are timed, and how many come before them: an idle GPU needs time to reach its full clock rate.
 struct TurnsOf {
     int timed, before;
 };
 
-/// The lists or masks that a binner makes of a frame.
+/// Returns the lists or masks that a binner makes of a frame's lights.
 template <class Binner, class... Inputs>
 auto bin_frame(Binner& binner, const GpuFrame& frame, const lightbin::View& view, const Inputs&... inputs) {
     return frame.to_view ? *binner.bin(view, lightbin::world_space(frame.lights, *frame.to_view), inputs...)
                          : *binner.bin(view, frame.lights, inputs...);
 }
 
-/// Throws std::runtime_error with one line where the device can't do it.
+/// Throws std::runtime_error with one line if the device can't run the passes.
 template <lightbin::Options options, bool masks>
 GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, const TurnsOf& turns,
                const lightbin::Slices& slices, const lightbin::ZBounds& bounds) {
@@ -55,7 +55,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     row.source = source.name;
     row.lights = first.lights.size();
 
-    // What lists the CPU makes of each frame, and so how long the GPU's may be.
+    // Makes each frame's lists on the CPU first, to know how much memory the GPU's lists need.
     std::conditional_t<masks, lightbin::MaskBinner, lightbin::Binner<options>> binner;
     const auto cpu = [&](const GpuFrame& frame) {
         if constexpr (masks)
@@ -71,7 +71,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
                  bounds);
     row.scratch = std::size_t(gpu.plan().bytes.scratch);
     device.make_buffer("sent ranges", gpu.plan().bytes.tiles);
-    // Ids or masks; a MaskBinner may add a word to each mask.
+    // Room for ids or masks. A MaskBinner may add a word to each mask.
     device.make_buffer("sent ids", std::max(4 * room, std::size_t(gpu.plan().bytes.masks) + 4096));
     const auto send = [&](const auto& made) {
         const auto write = [&](const char* name, const auto& values) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The file in C++20. It leaves out what light_lists.hpp does not ask for: docs/c.md has a table of what that saves.
+// The adapter's one C++20 file. It leaves out what light_lists.hpp does not use: docs/c.md says what that saves.
 #define LIGHTBIN_NO_BOXES
 #define LIGHTBIN_NO_U16
 #define LIGHTBIN_NO_Z_BINS

@@ -17,7 +17,7 @@
 
 class LightLists {
 public:
-    /// How far SimGear's shader may be wrong about a depth, as a part of it: it finds the slice by log2 in float.
+    /// Relative error of the depth in SimGear's shader, which finds the slice by log2 in float.
     static inline float margin = 0x1p-14f;
 
     LightLists() {
@@ -30,7 +30,7 @@ public:
         binner_.reset(binner);
     }
 
-    /// Does what SimGear's assignLightsToSlice() does, for all slices. Points and Spots are vectors of its
+    /// Makes the lists of all slices, like SimGear's assignLightsToSlice(). Points and Spots are vectors of its
     /// PointlightBound and SpotlightBound, which are in view space.
     template <class Points, class Spots>
     void fill(const osg::Camera& camera, int tile_size, int slices, float near, float far,

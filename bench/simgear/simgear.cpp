@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SimGear's clustered shading beside the same with lightbin in it, in turns: times, and the lights that its shader does
-// not find. bench/simgear.sh makes both classes from SimGear's file; of OwnShading only the name is changed.
+// Times SimGear's clustered shading with and without lightbin in turns, and counts the lights that its shader does not
+// find. bench/simgear.sh makes both classes from SimGear's file; OwnShading differs only in its name.
 #include "LightbinShading.hxx"
 #include "OwnShading.hxx"
 
@@ -36,7 +36,7 @@ osg::ref_ptr<osg::Camera> make_camera() {
     return camera;
 }
 
-/// Adds a light at a place in view space, which is the world here.
+/// Adds a light at a place in view space, which is also world space here.
 void add(SGLightList& lights, const osg::Vec3d& place, float range, float cutoff,
          const osg::Vec3d& direction) {
     osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(
@@ -80,7 +80,7 @@ public:
     }
     void update(const SGLightList& lights) { shading_->update(lights); }
 
-    /// Whether the shader finds a light, by its number in its kind, at a pixel and a depth. It computes in float.
+    /// Returns whether the shader, in float, finds light number `light` of its kind at a pixel and a depth.
     bool lists(int x, int y, float depth, int light, bool is_spot) const {
         const float at =
             std::log2(depth) * uniform("fg_ClusteredSliceScale") + uniform("fg_ClusteredSliceBias");
@@ -119,7 +119,7 @@ private:
     osg::ref_ptr<Shading> shading_;
 };
 
-/// Of lights that end at depths around each boundary of slices, how many are not found there.
+/// Counts the lights that end at a depth near a boundary of slices and are not found at that depth.
 template <class Shading> int lost_tangents(int slices, int* count) {
     const Case c = {4000, 0, 128, slices};
     Tables<Shading> tables(c);
@@ -134,7 +134,7 @@ template <class Shading> int lost_tangents(int slices, int* count) {
             for (int i = 0; i < std::abs(step); ++i)
                 depth = std::nextafter(depth, step < 0 ? 0 : far);
             for (const double radius : {depth * -0.5, depth * 0.5}) {
-                // SimGear has positions and ranges in float: only those count whose end is the depth even so.
+                // SimGear stores floats: only lights whose end is exactly this depth in float count.
                 const float centre = static_cast<float>(depth + radius),
                             range = static_cast<float>(std::abs(radius));
                 if (std::abs(static_cast<double>(centre) - depth) != static_cast<double>(range)) continue;
@@ -154,7 +154,7 @@ template <class Shading> int lost_tangents(int slices, int* count) {
     return lost;
 }
 
-/// Of the lights that reach pixels at random depths, how many the shader does not find there.
+/// Counts the lights that reach pixels at random depths but are not found there by the shader.
 template <class Shading>
 long lost_pairs(const Tables<Shading>& tables, const SGLightList& lights, const Case& c, long* pairs) {
     std::minstd_rand random(9);

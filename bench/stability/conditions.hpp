@@ -19,32 +19,32 @@ using oracle::Aim, oracle::Camera, oracle::Lens, oracle::Light, oracle::Matrix, 
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::optional<Matrix> world;  ///< the view matrix, where lights are in world space
+    std::optional<Matrix> world;  ///< the view matrix, if the lights are in world space
 };
 
-/// Lights at depths, and the boundaries of the slices that they are sorted into.
+/// Lights at certain depths, and the depth slices that they are sorted into.
 struct DepthScene {
     int slices;
-    float near_depth, last;  ///< what the slices reach from and to
+    float near_depth, last;  ///< where the slices begin and end
     double far_plane;        ///< of the camera
     std::vector<Light> lights;
 };
 
 struct Condition {
     std::string label;
-    double value;  ///< where it is in a plot
+    double value;  ///< its position on a plot's axis
 };
 
 struct Family {
     std::string name;  ///< a word, for files
     std::string title;
-    std::string axis;  ///< what the conditions are values of
+    std::string axis;  ///< what the values of the conditions are
     std::string what;  ///< what is varied
     std::string why;   ///< what makes that hard
     std::vector<Condition> conditions;
     Scene (*make)(Random&, double value, std::size_t lights) = nullptr;
     DepthScene (*make_depths)(Random&, double value, std::size_t lights) = nullptr;
-    bool flush = false;  ///< FTZ and DAZ are set
+    bool flush = false;  ///< denormal floats are flushed to 0 (FTZ and DAZ)
 };
 
 inline std::string short_text(double value) {
@@ -79,7 +79,7 @@ inline Lens lens_of(double degrees = 60) {
 inline Lens lens_from(double near_plane, Random& random) {
     Lens lens = lens_of();
     lens.near_plane = near_plane, lens.far_plane = oracle::infinite;
-    // No edge of a tile in the planes through the view axis, where many of these lights end.
+    // Shifts the image, so that no tile's edge lies in a plane through the view axis, where many of these lights end.
     oracle::families::shift(lens, random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
     return lens;
 }
@@ -89,12 +89,12 @@ inline Scene scene_of(const Lens& lens, const oracle::Screen& screen = full_hd) 
 
 // The lights.
 
-/// Any pixel's edge in the image, or often a tile's.
+/// Returns the position of a random pixel edge in the image, often that of a tile's edge.
 inline double place_in_view(const Aim& aim, int axis, Random& random) {
     return random.chance(0.5) ? aim.tile_edge(axis, random) : aim.pixel(axis, random, 0);
 }
 
-/// A sphere at depth d that ends, along one axis, at a place in view.
+/// Returns a sphere at depth d whose bounds along one axis end at a place in view.
 inline Light ending_in_view(const Aim& aim, Random& random, double d, double r) {
     const int axis = random.integer(0, 1);
     double c[2];
@@ -105,7 +105,7 @@ inline Light ending_in_view(const Aim& aim, Random& random, double d, double r) 
     return aim.light(c[0], c[1], d, r);
 }
 
-/// Lights 1 to 180 units away, in a part of the picture.
+/// Returns a light 1 to 180 units away that covers a part of the picture.
 inline Light ordinary_light(const Aim& aim, Random& random, double unit = 1) {
     const double d = unit * random.power_of_two(0, 7.5);
     return ending_in_view(aim, random, d, std::min(aim.half_height(d), d) * random.power_of_two(-6, -1));
@@ -127,8 +127,8 @@ inline Scene grazing(Random& random, double tangent, std::size_t lights) {
     const double t = tangent * static_cast<double>(r);
     Scene scene = scene_of(lens_from(t / 100, random));
     const Aim aim(scene.camera);
-    // Floats as large as r come no nearer to r^2 + t^2 = c^2 + z^2 than by 2^-24 of it. So below that |c| is a few
-    // units in the last place off the radius, and z, which is small then, makes up for the rest.
+    // Floats as large as r meet r^2 + t^2 = c^2 + z^2 only within 2^-24 of it. So for small tangents |c| is a few units
+    // in the last place off the radius, and z, which is small, is set to make up for it.
     const double ulp = 0x1p-23, most = std::min(1e5, 0x1p45 * tangent * tangent);
     const double R = static_cast<double>(r), side = random.sign();
     for (std::size_t i = 0; i < lights; ++i) {
@@ -198,7 +198,7 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
     lens.near_plane = 1, lens.far_plane = 1e6;
     Scene scene = scene_of(lens);
     const Aim aim(scene.camera);
-    // A rotation, from a random quaternion, and an eye.
+    // A random rotation, from a quaternion, and a random eye position.
     double q[4], eye[3], length = 0, far_off = 0;
     for (double& part : q)
         part = random.normal(), length += part * part;
@@ -238,10 +238,10 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
     return scene;
 }
 
-/// A light a few pixels wide, tangent to the edge of a one-pixel tile.
+/// Returns a light a few pixels wide whose image ends at the edge of a one-pixel tile.
 inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
     const double d = aim.depth(random), at = std::max(d, aim.unit);
-    // The radius of a sphere there whose image is one pixel wide.
+    // The radius of a sphere at that place whose image is one pixel wide.
     double pixel = oracle::infinite, c[2], edge[2];
     for (int axis = 0; axis < 2; ++axis) {
         edge[axis] = aim.tile_edge(axis, random);

@@ -11,7 +11,7 @@ namespace textbook {
 
 template <class Real> struct Slopes { Real low, high; };
 
-// In the (c, z) plane, c being x or y: a disc of centre (c, z) and radius r, and the near plane z = n.
+// c is x or y: a sphere's disc in the (c, z) plane has centre (c, z) and radius r; the near plane is z = n.
 
 /// Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere", JCGT 2(2), 2013: the
 /// centre turned by the tangent's angle, cut at the near plane.
@@ -58,7 +58,7 @@ struct LengyelLauritzen {
     }
 };
 
-// The slice of a depth, of `count` from near to far, each as many times as deep as the one before it.
+// Formulas for the slice of a depth: `count` slices from near to far, each deeper than the last by one factor.
 
 /// The slice of a depth by one logarithm, one product and one sum: Sousa and Geffroy, "The devil is in the details:
 /// idTech 666", SIGGRAPH 2016.

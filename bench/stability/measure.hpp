@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A condition measured: errors of each formula against exact bounds, tiles missed, excess, times.
+// Measures formulas under one condition: errors against exact bounds, tiles missed, extra tiles, times.
 #pragma once
 
 #include "../exact/screen_bounds.hpp"
@@ -27,15 +27,15 @@
 
 namespace stability {
 
-/// What one formula, in one precision, did under one condition. Errors are in pixels, or slices.
+/// Results of one formula in one precision under one condition. Errors are in pixels, or for depth in slices.
 struct Tally {
     std::string formula, precision;
-    std::uint64_t lights = 0;       ///< that the formula is for: most know no sphere that the near plane cuts
-    double error = 0;               ///< the largest error of a bound within the picture
-    std::uint64_t exact = 0;        ///< tiles, or slices, of the exact rectangles
-    std::uint64_t missed_bare = 0;  ///< of those, without a margin
-    std::uint64_t missed_same = 0;  ///< with the library's margin
-    std::uint64_t extra = 0;        ///< tiles beside the exact ones: ours with its margin, others without
+    std::uint64_t lights = 0;       ///< lights tested: most formulas allow none that the near plane cuts
+    double error = 0;               ///< largest error of a bound within the picture
+    std::uint64_t exact = 0;        ///< tiles, or slices, that lights truly need
+    std::uint64_t missed_bare = 0;  ///< of those, missed without a margin
+    std::uint64_t missed_same = 0;  ///< of those, missed with the library's margin
+    std::uint64_t extra = 0;        ///< tiles not needed: ours with a margin, others without
     double ns = 0;                  ///< a light
 
     bool used() const { return lights > 0; }
@@ -45,9 +45,9 @@ struct Tally {
 struct Result {
     std::vector<Tally> textbooks;
     Tally ours;
-    std::uint64_t checked = 0;  ///< exact bounds that rational arithmetic was asked about
-    std::uint64_t denied = 0;   ///< and those it denied
-    std::uint64_t unlike = 0;   ///< lights whose rectangle behind() does not explain
+    std::uint64_t checked = 0;  ///< exact bounds that were checked by rational arithmetic
+    std::uint64_t denied = 0;   ///< exact bounds that this check refuted
+    std::uint64_t unlike = 0;   ///< lights whose rectangle is not the one that behind() computes
 
     std::vector<const Tally*> all() const {
         std::vector<const Tally*> list;
@@ -61,17 +61,17 @@ struct Result {
 /// How much is asked of a condition.
 struct Effort {
     std::size_t scenes, lights;  ///< lights a scene
-    std::size_t check_every;     ///< one light in so many is checked by rationals
-    std::size_t lights_in_turn;  ///< that are timed
-    double seconds;              ///< for each time, at least
+    std::size_t check_every;     ///< one light in this many is checked by rational numbers
+    std::size_t lights_in_turn;  ///< number of lights that are timed
+    double seconds;              ///< least duration of each timing
 };
 
-/// The bounds, in pixels along both image axes, that a formula computes. They may lie outside of the image or be NaN.
+/// The bounds that a formula computes, in pixels along both image axes. They may lie outside of the image or be NaN.
 struct Bounds {
     double low[2], high[2];
 };
 
-/// The nearest and the farthest slice, or where in them a light's depths are.
+/// The nearest and the farthest slice of a light, or its depths as fractional slices.
 struct SliceRange {
     int first, last;
 };
@@ -82,7 +82,7 @@ struct SlicePlaces {
 /// A light in the camera's axes.
 template <class Real> struct InCamera { Real c[2], z, r; };
 
-/// A light as a renderer that computes in Real has it there. Inlined, as in a renderer's loop: this is timed.
+/// Moves a light to the camera's axes, computing in Real. Inlined as in a renderer's loop, because it is timed.
 template <class Real>
 [[gnu::always_inline]] inline InCamera<Real> in_camera(const Scene& scene, std::size_t i) {
     const Light& light = scene.lights[i];
@@ -97,7 +97,7 @@ template <class Real>
     }
     return {{p[0], p[1]}, -p[2], Real(light.w)};  // all cameras here look down -z
 }
-/// A textbook's formula in one precision, for the bounds of lights or for slices.
+/// A formula from a textbook in one precision, for the bounds of lights or for slices.
 struct ScreenFormula {
     const char *name, *precision;
     bool knows_near_plane;
@@ -190,10 +190,10 @@ private:
         std::vector<Scene> scenes, turns;
         for (std::size_t i = 0; i < effort_.scenes; ++i)
             scenes.push_back(family_.make(random_, value_, effort_.lights));
-        // Many lights in turn, so that no branch predictor learns them.
+        // Many different lights take turns, so that the branch predictor does not learn them.
         for (std::size_t i = 0; i < 16; ++i)
             turns.push_back(family_.make(random_, value_, effort_.lights_in_turn / 16));
-        // Exact numbers are made of integers: they don't feel it.
+        // The exact numbers are made of integers, so flushing denormal floats does not change them.
         const Environment flushing({.name = "flushing", .flushes = family_.flush});
         for (const Scene& scene : scenes)
             screen(scene);
@@ -206,8 +206,8 @@ private:
         return *view;
     }
 
-    /// A scene's lights in view space: exactly, but that the radius is made smaller by what a matrix of doubles may not
-    /// be a rotation by, so that what is asked for is no more than the library promises.
+    /// Returns a light in view space, exactly. If a matrix of doubles is not quite a rotation, the radius is reduced by
+    /// that error, so that no more is asked for than the library promises.
     static oracle::CameraBall exact_ball(const oracle::Oracle& oracle, const Scene& scene,
                                          const Light& light) {
         oracle::Ball ball = oracle::exact_ball(light.x, light.y, light.z, light.w);
@@ -265,7 +265,7 @@ private:
         }
     }
 
-    /// How far apart bounds are within the picture. One that is NaN is off by all of it.
+    /// Adds the distance between two bounds within the picture; for a bound that is NaN, the picture's size.
     static void add_error(Tally& tally, const Camera& camera, const oracle::AxisExtent* truth,
                           const Bounds& bounds) {
         const int sides[] = {camera.width, camera.height};
@@ -275,7 +275,7 @@ private:
                       std::isnan(high) ? side : truth[axis].high - std::clamp(high, 0.0, side));
         }
     }
-    /// By how much the two ends of a range lie too far inward.
+    /// Adds how far the two ends of a range lie too far inward.
     static void add_error(Tally& tally, double low_inward, double high_inward) {
         tally.error = std::max({tally.error, std::abs(low_inward), std::abs(high_inward)});
     }
@@ -313,7 +313,7 @@ private:
         return {{truth[0].first, truth[1].first}, {truth[0].last, truth[1].last}};
     }
 
-    /// Adds a light: its exact tiles, those without a margin and with the library's, and those that are listed.
+    /// Counts a light's tiles: the exact ones, those found without and with the library's margin, and those listed.
     static void add_tiles(Tally& tally, const TileRect& exact, const TileRect& bare, const TileRect& same,
                           const TileRect& listed) {
         const std::uint64_t whole = area(exact);
@@ -355,7 +355,7 @@ private:
     //--------------------------------------------------------------------------------------------------------
     // Times.
 
-    /// Nanoseconds a light: visit(scene) of each in turn, until there is time enough.
+    /// Returns nanoseconds for each light: visits the scenes in turn until the effort's time is used up.
     template <class Visit> double time(const std::vector<Scene>& scenes, Visit visit) const {
         std::vector<double> rounds;
         const double end = time_now() + effort_.seconds;
@@ -408,7 +408,7 @@ private:
         lens.doubles = true;
         return view_of(scene_of(lens, {64, 64, 64, false}));
     }
-    /// The boundaries that the textbooks' law has, as floats: what the cells are.
+    /// Returns slices with the textbooks' boundaries as floats, which define the cells.
     static lightbin::Slices slices_of(const DepthScene& scene) {
         const double ratio = static_cast<double>(scene.last) / static_cast<double>(scene.near_depth);
         const auto slices = lightbin::Slices::exponential(
@@ -420,8 +420,8 @@ private:
         return *slices;
     }
 
-    /// `needed` are the slices of depths within the light, where a boundary's slice is the one behind it, as a shader
-    /// finds it; `touched` also has the one that a light ends at. Either serves.
+    /// `needed` are the slices of the light's depths if a boundary belongs to the slice behind it, as for a shader;
+    /// `touched` also counts the slice that a light just reaches. Both answers are right.
     static void add_slices(Tally& tally, const SliceRange& needed, const SliceRange& touched,
                            const SliceRange& found) {
         const auto size = [](const SliceRange& range) {
@@ -437,7 +437,7 @@ private:
         tally.missed_same += missed;
         tally.extra += size(found) - common(touched);
     }
-    /// The textbooks' law, with 64 bits: the logarithm of 1 + x loses nothing where x is small.
+    /// Returns the exact place of a depth in fractional slices, with 64 bits; log(1 + x) keeps all digits of a small x.
     static double exact_place(const DepthScene& scene, double depth) {
         const double near_depth = static_cast<double>(scene.near_depth);
         using Long = long double;
@@ -460,7 +460,7 @@ private:
             }
         const std::span<const float> boundaries = slices.boundaries();
         for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-            // Exact: doubles hold the sums of floats of which neither is 2^29 times the other.
+            // Exact in double: neither float is 2^29 times as large as the other.
             const double z = -static_cast<double>(scene.lights[i].z),
                          r = static_cast<double>(scene.lights[i].w);
             const auto before = [&](double depth, bool itself) {
@@ -471,7 +471,7 @@ private:
                     });
                 return static_cast<int>(place - boundaries.begin());
             };
-            // Ours against the boundaries that the cells have, which are floats; the others against the law itself.
+            // Our slices are compared with boundaries in float, the textbooks' with the exact formula.
             const SliceRange needed = {before(z - r, true), before(z + r, true)},
                              touched = {before(z - r, false), needed.last};
             add_slices(result_.ours, needed, touched, found[i]);

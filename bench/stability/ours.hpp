@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The library's rectangles, from its own projection on every instruction set; and what lies behind them, which it does not
-// hand out: where the bounds are before the margin.
+// The rectangles that the library finds on every instruction set, and the bounds before its margin, which it has no
+// interface for.
 #pragma once
 
 #include "conditions.hpp"
@@ -22,13 +22,13 @@ struct TileRect {
     bool operator==(const TileRect&) const = default;
 };
 
-/// What the widest instruction set makes of a scene.
+/// What the widest instruction set finds for a scene.
 struct Projected {
-    std::vector<TileRect> rects;            ///< a light
-    std::vector<lightbin::Sphere> in_view;  ///< a light, in view space
+    std::vector<TileRect> rects;            ///< one for each light
+    std::vector<lightbin::Sphere> in_view;  ///< the lights in view space, one each
 };
 
-/// Calls use(Lights) with a scene's lights as the library takes them.
+/// Calls use(Lights) with a scene's lights in the form that the library takes.
 template <class Use> auto with_lights(const Scene& scene, Use use) {
     if (scene.world) return use(lightbin::world_space(scene.lights, scene.world->entry));
     return use(lightbin::view_space(scene.lights));
@@ -50,7 +50,7 @@ inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, con
     });
 }
 
-/// By the machine's widest instruction set, and the same by all others, or an exception.
+/// Projects lights by the machine's widest instruction set; throws an exception if another one gives anything else.
 inline Projected project(const lightbin::View& view, const Scene& scene) {
     const lightbin::Isa widest = lightbin::machine_isa();
     const Projected all = project_with(widest, view, scene);
@@ -62,15 +62,15 @@ inline Projected project(const lightbin::View& view, const Scene& scene) {
     return all;
 }
 
-/// How the library comes to a sphere's rectangle.
+/// How the library finds a sphere's rectangle of tiles.
 struct Behind {
     double low[2] = {0, 0},
-           high[2] = {0, 0};  ///< in tiles, without the margin; of a light that is not culled
+           high[2] = {0, 0};  ///< bounds in tiles, without the margin, if the light is not culled
     TileRect rect;
 };
 
-/// As project() in detail/project.inl, with its own functions; that the rectangle comes out as the library's own is for the
-/// caller to check.
+/// Computes like project() in detail/project.inl, by the library's own functions. The caller checks that the rectangle
+/// is the library's own.
 inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sphere& sphere) {
     namespace scalar = lightbin::detail::scalar;
     const float x = sphere.x * camera.x.sign, y = sphere.y * camera.y.sign, z = sphere.z * camera.z_sign,

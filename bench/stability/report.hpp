@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What was measured in words: a table with a line a family, stability.csv, and stability.page for bench/page.sh.
+// Reports results: a table with a line for each family, stability.csv, and stability.page for bench/page.sh.
 #pragma once
 
 #include "measure.hpp"
@@ -19,9 +19,9 @@ namespace stability {
 
 struct Measured {
     const Family* family;
-    std::vector<Result> results;  ///< a condition
+    std::vector<Result> results;  ///< one for each condition
 
-    /// Of the textbooks' formulas in a precision, the one with the least error, or the largest; null if none applies.
+    /// Returns the textbook formula in a precision that has the least, or the largest, error; null if none applies.
     const Tally* textbook(std::size_t condition, std::string_view precision, bool largest) const {
         const Tally* found = nullptr;
         for (const Tally& tally : results[condition].textbooks)
@@ -30,8 +30,8 @@ struct Measured {
                 found = &tally;
         return found;
     }
-    /// The condition under which the best textbook in float is farthest off; if that is less than a pixel or a slice, the
-    /// worst one. The mildest of several.
+    /// Returns the condition under which the best textbook formula in float is farthest off or, if that is less than a
+    /// pixel or slice, the worst formula. Among equals the mildest condition.
     std::size_t worst() const {
         std::size_t found = 0;
         double most = 0;
@@ -43,7 +43,7 @@ struct Measured {
         }
         return found;
     }
-    /// Whether under some condition even the best textbook in a precision is off by a pixel or a slice.
+    /// Returns whether there is a condition under which even the best textbook formula is off by a pixel or a slice.
     bool breaks(std::string_view precision) const {
         for (std::size_t i = 0; i < results.size(); ++i)
             if (const Tally* const best = textbook(i, precision, false); best && best->error >= 1)
@@ -74,7 +74,7 @@ inline std::string percent(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? "-" : percent(double(part) / double(whole));
 }
 
-/// A row a family, at the condition where the best formula in float errs most; of ours also the most of all conditions.
+/// Returns a table row for each family, at the condition where the best formula in float errs most.
 inline std::vector<TableRow> table(const std::vector<Measured>& all) {
     std::vector<TableRow> rows = {{"stiff or extreme", "at", "error: float", "double", "ours", "ours at most",
                                    "missed: float", "double", "ours", "excess at most", "ns: float", "double",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Each function of the C side gives what C++ gives, for one case or a few: both sides run the same code, so that only what
-// the C side reads and chooses can differ. Its functions are in a library; this file includes both headers, as a program
-// may that moves from one side to the other.
+// The functions of the C API give what C++ gives, in one case or a few each: both run the same code, so that only what
+// the C API reads and chooses can differ. The C functions are in a library; this file includes both headers, as a
+// program may that moves from one API to the other.
 #include <lightbin/lightbin.h>
 
 #include <lightbin/box.hpp>
@@ -27,7 +27,7 @@ namespace {
 
 using namespace lightbin;
 
-/// A struct of the caller's, whose members lie in another order than lightbin's, behind a byte so that none is aligned.
+/// A user's struct: members in another order than lightbin's, behind a byte, so that none is aligned.
 #pragma pack(push, 1)
 struct Lamp {
     char kind;
@@ -47,7 +47,7 @@ float random_float(SplitMix& random, float low, float high) {
     return low + (high - low) * static_cast<float>(random.integer(0, 1 << 20)) * 0x1p-20f;
 }
 
-/// The lights of every case, as C++ has them and as lamps.
+/// The lights of every case, in lightbin's types and in the user's struct above.
 struct Scene {
     std::vector<Lamp> lamps = std::vector<Lamp>(count);
     std::vector<Sphere> spheres;
@@ -110,7 +110,7 @@ template <class Handle, class Create> Owned<Handle> owned(const Create& create) 
     return Owned<Handle>(made);
 }
 
-/// Returns one of lightbin.h's structs with the defaults.
+/// Returns one of lightbin.h's structs with its size set and all else at the defaults.
 template <class Struct> Struct sized() {
     Struct made = {};
     made.size = sizeof made;
@@ -138,7 +138,7 @@ Owned<lightbin_binner> make_binner(const lightbin_binner_options* options = null
     return owned<lightbin_binner>([=](auto binner) { return lightbin_binner_create(options, binner); });
 }
 
-/// Compares the counts of lights in a lightbin_grid or lightbin_masks.
+/// Compares the counts of lights in a lightbin_grid or lightbin_masks with those of C++.
 template <class Made> void compare_counts(const LightCounts& expected, const Made& made) {
     CHECK(made.lights == expected.lights);
     CHECK(made.rejected == expected.rejected);
@@ -169,7 +169,7 @@ void compare(const LightMasks& expected, const lightbin_masks& masks) {
     compare_counts(expected.light_counts(), masks);
 }
 
-/// What is made of a finished grid, on both sides.
+/// Compares all that can be made of a finished grid, in C and in C++.
 template <class Id>
 void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     const std::size_t cells = expected.ranges().size();
@@ -199,7 +199,7 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid) {
     CHECK(encoded.capacity_needed == cpp_encoded.capacity_needed);
 }
 
-/// Compares a shader's text and bindings, or the sentence of the error.
+/// Compares a shader's text and bindings in C and C++ or, if it is refused, the sentence of the error.
 template <class Create, class Given>
 void compare_shaders(const Result<ShaderText>& expected, const Create& create, const Given& options) {
     lightbin_shader* made = nullptr;
@@ -225,12 +225,12 @@ void compare_shaders(const Result<ShaderText>& expected, const Create& create, c
     }
 }
 
-/// Returns where the floats of a member lie in lamps, of which `member` is the first's.
+/// Returns where the floats of a member lie in an array of structs; `member` is that of the first struct.
 template <class Floats> lightbin_floats in_lamps(const Floats& member) {
     return {&member, sizeof(Lamp)};
 }
 
-/// Of the lights, those from `first_spot` on are spots, those from `first_box` on boxes, and those before both spheres.
+/// Describes the lights to the C API: spheres up to `first_spot`, spots up to `first_box`, then boxes.
 ///
 /// cut  boxes are given with spheres and tapers
 lightbin_lights lights_of(std::size_t first_spot, std::size_t first_box, bool in_world, bool cut) {

@@ -13,7 +13,7 @@ int main() {
         return 1;
     }
 
-    // Five units in front of the eye, three to the right, three up: in the upper right tile alone.
+    // A light ahead, to the right and up, so that only the upper right tile lists it.
     const std::array<lightbin::Sphere, 1> lights{{{3, 3, -5, 1}}};
     lightbin::Binner<> binner;
     const auto grid = binner.bin(*view, lights);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes to camera, lights, Z bounds or a depth buffer; then the lists on every tier, the oracle looking on.
+// Bytes make a camera, lights and depths of tiles; every instruction set's lists are checked by exact arithmetic.
 #include "../oracle/judge.hpp"
 #include "bytes.hpp"
 
@@ -58,7 +58,7 @@ Light take_light(Bytes& bytes, const Aim& aim) {
     return light;
 }
 
-/// A tile's or pixel's values, from a few.
+/// Fills a tile's or pixel's values with a few different ones.
 void fill(std::vector<float>& values, std::size_t count, Bytes& bytes, const Aim& aim) {
     std::vector<float> palette;
     Random random(bytes.byte());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A fuzzer's bytes as values. Past their end everything is 0.
+// Reads values from a fuzzer's bytes. Past their end all values are 0.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bytes to calls of the C side, with whatever numbers, pointers that may be null, arrays and structs of exactly the size
-// that is stated, and memory that may run out. A call is refused by a sentence, or what it makes is sound; nothing leaks.
+// Calls the C API as a fuzzer's bytes say: any numbers, null pointers, arrays and structs of exactly the stated size,
+// memory that runs out. Each call fails with a sentence or makes something sound; nothing leaks.
 #define LIGHTBIN_NO_SIMD  // of the kernels the scalar ones are enough
 #define LIGHTBIN_IMPLEMENTATION
 #include <lightbin/lightbin.h>
@@ -27,7 +27,7 @@ void require(bool condition, const char* what) {
 bool memory_is_limited = false;
 long left = 0, blocks = 0;
 
-/// Whether a call succeeded. If not, its sentence is sound.
+/// Returns whether a call succeeded. If not, checks that its error is a sentence.
 bool judged(const lightbin_result& result) {
     memory_is_limited = false;
     char text[600] = "";
@@ -37,16 +37,16 @@ bool judged(const lightbin_result& result) {
     return result.error == LIGHTBIN_OK;
 }
 
-/// Whether a call succeeded, in which memory may run out.
+/// Makes a call in which memory may run out; whether it succeeded.
 #define succeeded(...) (memory_is_limited = true, judged(__VA_ARGS__))
 
-/// Mostly a small number that makes sense, sometimes any.
+/// Returns a small number that makes sense, or sometimes any number.
 std::int32_t take_number(Bytes& bytes, unsigned below) {
     const unsigned kind = bytes.byte();
     return kind < 240 ? static_cast<std::int32_t>(kind % below) : bytes.take<std::int32_t>();
 }
 
-/// Mostly a number that makes sense of lights or entries, sometimes any.
+/// Returns a number that makes sense as a count of lights or entries, or sometimes any number.
 std::uint32_t take_product(Bytes& bytes) {
     const auto first = static_cast<std::uint32_t>(take_number(bytes, 240));
     return first * static_cast<std::uint32_t>(take_number(bytes, 240));
@@ -70,7 +70,7 @@ void check_grid(const lightbin_grid& grid) {
     require(at == grid.id_count, "ids in no list");
 }
 
-/// Makes of a finished grid what can be made of it.
+/// Calls all functions that take a finished grid.
 void use_grid(const lightbin_grid& grid) {
     std::vector<lightbin_range> ranges(2 * grid.range_count);
     std::vector<char> ids(2 * grid.id_count * grid.id_bytes);
@@ -82,7 +82,7 @@ void use_grid(const lightbin_grid& grid) {
         check_grid(both);
 }
 
-/// Floats of lights in an array of exactly the size that they take, or as the bytes have it, nothing.
+/// Returns the lights' floats in an array of exactly the size that they take or, if the bytes say so, no array.
 lightbin_floats take_floats(Bytes& bytes, std::size_t count, std::size_t each,
                             std::vector<std::unique_ptr<char[]>>& memory) {
     const std::size_t stride = bytes.byte() % 40;
@@ -97,7 +97,7 @@ lightbin_floats take_floats(Bytes& bytes, std::size_t count, std::size_t each,
     return {memory.back().get(), stride};
 }
 
-/// A struct in memory of as many bytes as its `size` states: mostly all, sometimes any number.
+/// A struct in memory of exactly the size that its member `size` states: usually the full size, sometimes any.
 template <class Struct> class Sized {
 public:
     Sized(Struct values, Bytes& bytes)
@@ -139,8 +139,8 @@ lightbin_cull_options take_cull_options(Bytes& bytes, const char* prefix) {
     return options;
 }
 
-/// Asks for a text and a plan that make lists on the GPU. That they are refused for a reason, and what they hold, is
-/// shader.cpp's to judge.
+/// Asks for a shader text and a plan that make lists on the GPU. Their contents, and reasons to refuse them, are tested
+/// in shader.cpp.
 void plan_lists_on_gpu(Bytes& bytes, const lightbin_view* view, const lightbin_slices* slices) {
     std::string prefix;
     for (unsigned length = bytes.byte() % 8; prefix.size() < length;)
@@ -197,7 +197,7 @@ void use_calls(Bytes bytes) {
     view_options.origin = take_number(bytes, 2);
     view_options.projection.floats = projection;
     view_options.projection.layout = bytes.byte() > 240 ? take_number(bytes, 3) : 0;
-    // Pixels-sized tiles of a large viewport would take the fuzzer's time.
+    // Tiles of a few pixels in a large viewport would take the fuzzer too long.
     if (view_options.tile_size < 4 && view_options.tile_size != 0) view_options.tile_size += 4;
     if (view_options.width > 400 || view_options.height > 400) view_options.tile_size = 512;
     succeeded(lightbin_view_create(&view_options, &view));
@@ -289,7 +289,7 @@ void* operator new(std::size_t bytes) {
     ++blocks;
     return memory;
 }
-// The others would call these, but for those that a sanitizer brings.
+// By default the array forms call these; but a sanitizer has array forms of its own.
 void* operator new[](std::size_t bytes) {
     return operator new(bytes);
 }

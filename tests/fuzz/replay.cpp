@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PROGRAM CORPUS: runs the fuzz target on every input of a corpus in one file: each after its length in two bytes, low
-// one first.
+// PROGRAM CORPUS: runs the fuzz target on every input in a file. Each input follows its length in two bytes, low byte
+// first.
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -19,7 +19,7 @@ int main(int count, char** words) {
         const std::size_t size = byte(at) + 256 * byte(at + 1);
         at += 2;
         if (at + size > all.size()) return 1;
-        // In memory of its own, so that a sanitizer sees what is read beyond its end.
+        // A copy of exactly the input's size, so that a sanitizer notices reads beyond its end.
         const std::vector<std::uint8_t> input(all.data() + at, all.data() + at + size);
         LLVMFuzzerTestOneInput(input.data(), size);
         at += size;

@@ -43,7 +43,7 @@ std::uint32_t take_size(Bytes& bytes) {
                              : bytes.take<std::uint32_t>();
 }
 
-/// 0 leaves a slot at its default, where no other is. Some are negative.
+/// Sets a slot, which may be negative; 0 leaves it at the default, which must be unused.
 void take_slot(Bytes& bytes, ShaderSlot& slot) {
     slot.binding ^= static_cast<int>(bytes.byte());
     const unsigned kind = bytes.byte();
@@ -69,35 +69,35 @@ struct Language {
           es(language == ShaderLanguage::essl_300 || language == ShaderLanguage::essl_310),
           sets(vulkan || wgsl || language == ShaderLanguage::hlsl_5_1) {}
     bool hlsl, vulkan, wgsl;
-    bool old;  ///< no compute shaders and storage buffers, and no bindings in the text
+    bool old;  ///< has no compute shaders or storage buffers, and no bindings in the text
     bool es, sets;
 };
 
-/// Something to bind, and what of it the options fix.
+/// A binding that a text must have, and which of its properties the options determine.
 struct Wanted {
     std::string name;
     ShaderSlot slot;
-    std::uint32_t bytes = 0;  ///< of a block; 0: it is none, or of any size up to the one allowed
+    std::uint32_t bytes = 0;  ///< size of a block; 0 if it is no block or may have any size up to the limit
 };
 
-/// What is asked of a generator, and what to expect of its answer.
+/// A generator's options, and what its answer must be.
 struct Question {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     std::string prefix;
     bool push_constants = false;
-    std::vector<ShaderSlot> slots;  ///< all, those of no use to the text too
-    std::set<ErrorCode> reasons;    ///< to refuse
-    std::vector<Wanted> wanted;     ///< in the order of the text, but for the constants before them
+    std::vector<ShaderSlot> slots;  ///< all slots in the options, also those that the text does not use
+    std::set<ErrorCode> reasons;    ///< errors with which the options may be refused
+    std::vector<Wanted> wanted;     ///< in the order of the text, without the constants at its beginning
     std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
-    bool constants_in_block = false;  ///< in OpenGL, too
-    bool view_check = false;          ///< constants of its own
+    bool constants_in_block = false;  ///< the constants are in a block in OpenGL, too
+    bool view_check = false;          ///< whether it has constants for a check of the view
     ShaderSlot view_slot;
-    std::uint32_t block_bytes = 0;   ///< the most of a block of other things than constants
-    std::vector<std::string> names;  ///< in the text, without the prefix
+    std::uint32_t block_bytes = 0;   ///< size limit of a block that does not hold constants
+    std::vector<std::string> names;  ///< that the text must have, without the prefix
 };
 
-/// Takes what all generators' options have at last, and notes what all questions have of them.
+/// Fills in the options that all generators have, and the expectations that follow from them.
 template <class Options>
 void take_rest(Bytes& bytes, Options& options, std::initializer_list<ShaderSlot*> slots, Question& question) {
     for (ShaderSlot* slot : slots) {
@@ -115,7 +115,7 @@ bool of_a_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Words of the languages that may stand outside of functions, a space around each.
+/// Words of the shader languages that may stand outside of functions, with a space around each.
 const std::string language_words =
     " uniform layout buffer readonly restrict struct highp const uint uvec2 uvec4 ivec2 int bool"
     " float vec3 void uint2 uint4 int2 float3 cbuffer register StructuredBuffer Texture2D inout"
@@ -127,7 +127,7 @@ const std::string language_words =
     " fn u32 f32 vec2u vec4u vec2i vec2f vec3f vec4f workgroup atomic compute fragment workgroup_size "
     "location ";
 
-/// Brackets pair; names at the outermost level, and those of members that blocks put there, have the prefix.
+/// Checks that brackets pair, and that global names, also of members of blocks, begin with the prefix.
 void check_text(const std::string& text, const std::string& prefix) {
     require(text.find('$') == std::string::npos, "a placeholder is left", text);
     std::string open, word;
@@ -221,7 +221,7 @@ void check_bindings(const ShaderText& made, const Question& question) {
                                                     : "binding = " + number + ")";
         const std::size_t found = line.find(place);
         require(found != std::string::npos, "bound elsewhere", text);
-        // A kind of its own: HLSL's letter before the number; OpenGL's kinds of objects.
+        // The binding's kind if slots are counted for each kind: HLSL's register letter, or OpenGL's kind of object.
         const std::string kind = language.vulkan || language.wgsl ? ""
                                  : language.hlsl                  ? line.substr(found - 1, 1)
                                                                   : line.substr(0, line.find("binding"));
@@ -311,7 +311,7 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(options.storage == ListStorage::texture_2d &&
                   (options.texture_width == 0 || options.texture_width > 16384),
               ErrorCode::texture_width_out_of_range);
-    // Sizes in double: those that it cannot hold are far too large anyway.
+    // Sizes are computed in double: those that a double cannot hold exactly are far beyond the limits.
     const double id_bytes = static_cast<double>(format.ids), tiles = options.max_tiles;
     refuse_if(!masks && format.encoding == ListEncoding::sentinel && format.capacity == 0,
               ErrorCode::capacity_unknown);
@@ -393,7 +393,7 @@ std::vector<Wanted> buffers_of(CullPass pass, const CullOptions& options) {
     return wanted;
 }
 
-/// The numbers of a plan are those asked for, and its sizes and groups within the limits that its comments state.
+/// Checks that a plan has the numbers that were asked for, and sizes and groups within the documented limits.
 void check_plan(const CullPlan& plan, const View& view, const CullOptions& options,
                 const CullCapacity& room, std::uint32_t slices) {
     const auto holds = [](bool condition, const char* what) { require(condition, what, ""); };
@@ -414,7 +414,7 @@ void check_plan(const CullPlan& plan, const View& view, const CullOptions& optio
     sized(plan.bytes.masks, 4 * (1 + of_each * mask_words));
     holds(plan.bytes.masks < std::uint64_t{1} << 34, "more words of masks than numbers");
 
-    // Arrays in `scratch` lie behind each other, with room for what docs/gpu.md says.
+    // The arrays in `scratch` lie one after another, with the sizes in docs/gpu.md.
     const std::uint64_t words = plan.bytes.scratch / 4;
     const std::uint64_t places[] = {made.masks, made.counts, made.ranges, made.sums, made.groups, words};
     holds(words < std::uint64_t{1} << 32, "more words than numbers");
@@ -444,7 +444,7 @@ void check_plan(const CullPlan& plan, const View& view, const CullOptions& optio
     }
 }
 
-/// Bytes to a view, slices and the rest of what plan_cull() takes.
+/// Makes a view, slices and the other arguments of plan_cull() from bytes, and checks the plan.
 void fuzz_plan(Bytes& bytes, CullOptions options) {
     constexpr float perspective[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}},
                     flat[4][4] = {{0.1f, 0, 0, 0}, {0, 0.1f, 0, 0}, {0, 0, -0.01f, 0}, {0, 0, -1, 1}};

@@ -1,5 +1,5 @@
-// What --advise measures with, held against ray casting and against what the renderer draws and counts. No test asks how
-// long anything takes.
+// Tests what the option --advise measures, against ray casting and against what the renderer draws and counts. No test
+// asks how long anything takes.
 #include <advise_scene.hpp>
 #include <binned_lights.hpp>
 #include <cpu_depth.hpp>
@@ -32,7 +32,7 @@ TEST_CASE("evaluations are those that the renderer counts of the picture that it
         std::size_t view;
     };
     const OffscreenContext context(430);
-    // The made scene's street has triangles through the near plane; everything.glb's second camera is orthographic.
+    // The generated scene has triangles through the near plane; the second camera of everything.glb is orthographic.
     for (const Seen& seen : {Seen{fixtures + "/nova.glb", 0}, Seen{"nova_spots.glb", 0},
                              Seen{"everything.glb", 1}, Seen{"", 1}}) {
         CAPTURE(seen.file);
@@ -92,7 +92,7 @@ TEST_CASE("evaluations are those that the renderer counts of the picture that it
         CHECK(measured[9].build == 0);
         CHECK(measured[9].shade > measured[0].shade);
 
-        // The advice is of the same counts, from a pixel of 16 where it is of slices.
+        // The advice counts the same; where it is about slices, it counts one pixel of 16.
         const lightbin::Advice advice = costs.advise();
         for (const lightbin::AdvicePlan& advised : advice.plans()) {
             if (!advised.tiled || advised.tile_size != 16 || advised.has_z_bounds()) continue;
@@ -123,7 +123,7 @@ TEST_CASE("overdraw is that of the fragments that OpenGL shades without a pre-pa
         glGetQueryObjectuiv(query, GL_QUERY_RESULT, &count);
         return static_cast<double>(count);
     };
-    // With a pre-pass: all of its own, and those that are seen.
+    // With a pre-pass, fragments are counted in the pre-pass, and then only those that are seen.
     const double without = fragments(DepthUse::none), seen = fragments(DepthUse::pre_pass) - without;
     const glm::mat4 projection = projection_of(camera, 1.6);
     const double overdraw =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every technique of bench/frames against the picture of every light in every fragment, and its count of light
-// evaluations against lists and depths that are gone through here.
+// Compares every technique of bench/frames with the picture of every light in every fragment, and its number of light
+// evaluations with counts from lists and depths made here.
 #include "cases.hpp"
 #include "passes.hpp"
 #include "runner.hpp"
@@ -42,7 +42,7 @@ Bytes draw(Stage& stage, const Technique& technique, const Camera& camera, Setti
     return stage.read_picture();
 }
 
-// Draws the depths of a frame, which stay bound, and returns them.
+// Draws and binds the depth buffer of a frame, and returns its depths.
 std::vector<float> draw_depths(Stage& stage, const Camera& camera, const Settings& settings) {
     stage.begin(camera, settings);
     begin_picture(stage);
@@ -69,7 +69,7 @@ Unlikeness compare(const Bytes& a, const Bytes& b) {
     return difference;
 }
 
-// What of a scene the lights are on: neither black nor white.
+// Returns the part of a picture that lights reach: pixels that are neither black nor white.
 double lit_share(const Bytes& picture) {
     double lit = 0;
     for (std::size_t i = 0; i < picture.size(); i += 4)
@@ -149,7 +149,7 @@ TEST_CASE("evaluations are those of the lists") {
         return stage.evaluations();
     };
 
-    // The depths of the pixels, and lists of their tiles.
+    // Finds the depths of all pixels, and makes the lists of their tiles.
     DepthBounds bounds;
     const std::vector<float> depth = draw_depths(stage, scene.cameras[0], settings);
     const lightbin::View view = stage.view();
@@ -184,14 +184,14 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(counted(tiled_forward_pre_z(ZEnds::both)) < listed * 11 / 10);
     CHECK(counted(forward_every_light()) >= pixels * scene.lights.size());
     CHECK(counted(tiled_forward()) > listed);
-    // The stencil is drawn by a polyhedron around the light's sphere, so it marks a few more pixels.
+    // The stencil is drawn with a polyhedron around the light's sphere, so it marks a few more pixels than the sphere.
     const std::uint64_t marked = counted(deferred_stencil(32));
     CHECK(marked >= reached);
     CHECK(marked <= nearly_reached);
     CHECK(reached > pixels);
 }
 
-// One surface, so that nothing is lit and then hidden.
+// A scene of one surface, where nothing is lit and then hidden by something nearer.
 TEST_CASE("evaluations without a pre-pass, and a light at a time") {
     Scene scene = make_scene(250);
     scene.triangles.resize(6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tiled_forward makes of a .glb file.
+// Tests what the example tiled_forward reads from a .glb file.
 #include "glb.hpp"
 
 #include "scene.hpp"
@@ -38,7 +38,7 @@ bool mentions(const Scene& scene, const std::string& text) {
 
 TEST_CASE("every kind of primitive gives the triangles of its square") {
     const Scene scene = load(everything_glb());
-    // Four squares of mesh 0, then meshes 2 (a child) and 1: two triangles each.
+    // The node with mesh 0 is drawn as four squares, then come meshes 2 (its child) and 1, with two triangles each.
     REQUIRE(scene.triangles.size() == 6 * 6);
     for (std::size_t square = 0; square < 4; ++square) {
         CAPTURE(square);
@@ -62,8 +62,8 @@ TEST_CASE("every kind of primitive gives the triangles of its square") {
 
 TEST_CASE("a node's transform is that of its parents and its own") {
     const Scene scene = load(everything_glb());
-    // Node 3, at (0, 1, 2) in a parent that doubles, turns a quarter about y (z becomes x) and moves by (0,
-    // 0, -10).
+    // Node 3, at (0, 1, 2) in a parent with scale 2, is turned by 90 degrees about y (z becomes x) and moved by (0, 0,
+    // -10).
     for (std::size_t i = 24; i < 30; ++i) {
         const Vertex& v = scene.triangles[i];
         CHECK(v.position.x == doctest::Approx(4));
@@ -84,7 +84,7 @@ TEST_CASE("given normals are kept, and a mirrored mesh is not turned inside out"
 }
 
 TEST_CASE("positions and normals may be integers, as they are or as shares of the largest") {
-    // The corners (2, 0, -4), (12, 0, -4), (2, 10, -4), by nodes that scale and move them. Rows are four components apart.
+    // A triangle (2, 0, -4), (12, 0, -4), (2, 10, -4), in forms with different scales and moves of nodes.
     struct Form {
         const char *type, *scale, *translation;
         std::string corners;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes every mistake of the table of docs/troubleshooting.md for real, and sees that what the page says tells of it does,
-// and nothing else. Where nothing is wrong, nothing does.
+// Makes every mistake in the table of docs/troubleshooting.md, and checks that exactly the diagnostics that the page
+// names report it. Where nothing is wrong, none reports anything.
 #include <stdexcept>
 
 struct AssertionFailed : std::logic_error {
@@ -70,7 +70,7 @@ void main() {
 }
 )";
 
-// A floor, a wall behind it, and a small board just before the eye.
+// Returns the triangles of a floor, a wall behind it, and a small board just before the eye.
 std::vector<glm::vec3> triangles(const Setup& setup) {
     std::vector<glm::vec3> points;
     const auto board = [&](const glm::vec3& corner, const glm::vec3& a, const glm::vec3& b) {
@@ -125,7 +125,7 @@ public:
     }
 
 private:
-    // Uploads the lists. Returns whether there are any.
+    // Uploads the lists of lights. Returns whether there are any.
     template <lightbin::Options options>
     bool bin(lightbin::Binner<options>& binner, const Setup& setup, const lightbin::View& view, Seen& seen) {
         const auto as_is = [](const lightbin::Sphere& light) { return light; };
@@ -176,7 +176,7 @@ private:
                      points.data(), GL_STREAM_DRAW);
     }
 
-    // All that is not set is 0, as in a program just linked.
+    // Uniforms that are not set are 0, as in a program that was just linked.
     void set_constants(const Setup& setup, const lightbin::View& view) const {
         const lightbin::GridConstants grid = setup.grid_set
                                               ? lightbin::grid_constants(view, setup.corner[0], setup.corner[1])
@@ -198,7 +198,7 @@ private:
         for (const lightbin::Sphere& light : setup.lights)
             spheres.push_back(
                 {glm::vec3(setup.view * glm::vec4(light.x, light.y, light.z, 1)), light.radius});
-        // In the order of ranks; what is out of view follows, and is not asked for.
+        // Sorts the lights by rank in depth. Lights out of view follow; no list has them.
         const std::vector<glm::vec4> unordered = spheres;
         for (std::size_t rank = 0; setup.ranked && rank < order_.size(); ++rank)
             spheres[rank] = unordered[order_[rank]];
@@ -249,7 +249,7 @@ struct Row {
     std::set<std::string> by;
 };
 
-// The page's rows, by the cell "What is wrong".
+// Returns the rows of the page's table, by their cell "What is wrong".
 std::map<std::string, Row> rows_of(const char* path) {
     std::map<std::string, Row> rows;
     std::ifstream file(path);
@@ -263,7 +263,7 @@ std::map<std::string, Row> rows_of(const char* path) {
     return rows;
 }
 
-// Whether the picture is as black or as right as the row has it.
+// Returns whether the picture is black, wrong or right, as the row says.
 bool looks_so(const std::string& picture, const Seen& seen, int lit_when_right) {
     const bool dark = 10 * seen.lit < lit_when_right;
     return picture == "-"                                                        ? seen.drawn == 0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a frame is set up, each usual mistake as a change of that, and changes that are none.
+// The set-up of a frame, each usual mistake as a change of it, and changes that are not mistakes.
 #pragma once
 
 #include <lightbin/lightbin.hpp>
@@ -25,12 +25,12 @@ constexpr std::size_t light_count = 48;
 inline const glm::mat4 camera =
     glm::lookAt(glm::vec3(1, 1.5f, 4), glm::vec3(-1, -0.5f, -6), glm::vec3(0, 1, 0));
 
-// A point of the camera's view space in world space.
+// Returns a point of the camera's view space in world space.
 inline glm::vec3 before_eye(float x, float y, float z) {
     return glm::vec3(glm::inverse(camera) * glm::vec4(x, y, z, 1));
 }
 
-// In world space. The last one is a small one close to the eye.
+// Returns world-space lights. The last one is small and close to the eye.
 inline std::vector<lightbin::Sphere> world_lights() {
     std::mt19937 engine(3);
     const auto number = [&](float low, float high) {
@@ -44,7 +44,7 @@ inline std::vector<lightbin::Sphere> world_lights() {
     return lights;
 }
 
-// What is drawn, and what the library is told: a mistake is a difference of the two.
+// What is drawn and what the library is told; a mistake makes the two differ.
 struct Setup {
     glm::mat4 projection = glm::perspective(1.1f, aspect, 0.2f, 50.0f);
     glm::mat4 view = camera;
@@ -90,7 +90,7 @@ inline glm::mat4 jittered(glm::mat4 projection) {
     return projection;
 }
 
-// The names are those of the page.
+// Returns the mistakes, with their names on the page docs/troubleshooting.md.
 inline std::vector<Case> mistakes() {
     using glm::perspective;
     using glm::transpose;
@@ -177,7 +177,7 @@ inline std::vector<Case> mistakes() {
     };
 }
 
-// Nothing is to tell of these.
+// Returns set-ups that are not mistakes: no diagnostic may report them.
 inline std::vector<Case> right_ones() {
     using glm::perspective;
     using lightbin::WindowOrigin;

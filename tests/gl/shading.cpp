@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pictures of tiled_forward are those of every light in every fragment where surfaces hide each other within pixels.
+// The pictures of tiled_forward equal those of every light in every fragment, however surfaces overlap within pixels.
 #include "gl_context.hpp"
 #include "renderer.hpp"
 
@@ -10,7 +10,7 @@
 namespace {
 
 constexpr int width = 61, height = 47;
-// Steep splinters that hide each other within pixels, and lights that reach little.
+// Makes steep, thin triangles that hide each other within pixels, and lights with short ranges.
 Scene splinters() {
     std::mt19937 engine(4);
     const auto between = [&](double low, double high) {

@@ -24,7 +24,7 @@ bool is_lit(const GpuLight& light, const glm::vec3& point, int ulps) {
     return glm::dot(glm::vec3(light.cone), to_light * root) + light.cone.w > 0;
 }
 
-// By how much the cosine at the point is above the spot's.
+// Returns how much the cosine at the point exceeds the cosine of the spot's half angle.
 double above(const lightbin::Spot& spot, const glm::vec3& point) {
     const glm::dvec3 way = glm::dvec3(point) - glm::dvec3(spot.x, spot.y, spot.z),
                      axis(spot.axis_x, spot.axis_y, spot.axis_z);
@@ -32,7 +32,7 @@ double above(const lightbin::Spot& spot, const glm::vec3& point) {
            static_cast<double>(spot.cos_half_angle);
 }
 
-// Whether the shader's function apply_box changes the point. It may add up its products in any order.
+// Returns whether the shader's function apply_box changes the point. GLSL may add up its products in any order.
 bool is_changed(const GpuBox& box, const glm::vec3& point, bool backwards) {
     glm::vec3 place;
     for (int i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ bool is_changed(const GpuBox& box, const glm::vec3& point, bool backwards) {
     return std::abs(place.x) < width && std::abs(place.y) < width && std::abs(place.z) < 1;
 }
 
-// How far out a point is between the middle of a box and its faces, where it is 1. `rows` are those of a GpuBox.
+// Returns a point's place between a box's middle (0) and its faces (1). `rows` are those of a GpuBox.
 double outwards(const glm::dmat4& rows, double taper, const glm::vec3& point) {
     const glm::dvec3 place(glm::dvec4(glm::dvec3(point), 1) * rows);
     const double width = (1 + taper + place.z * (1 - taper)) / 2;

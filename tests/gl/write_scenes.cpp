@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the .glb files that the runs of tiled_forward need to the current folder.
+// Writes the .glb files that tests of tiled_forward need to the current folder.
 #include "glb.hpp"
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// A scene of point lights as one of spots, which shine in all six directions of the axes, with narrow and wide cones.
+// Turns the point lights of a file into spots along the six directions of the axes, with narrow and wide cones.
 std::string as_spots(const std::string& file) {
     constexpr float half = 0.70710678f;
     constexpr std::array<std::array<float, 4>, 6> turns = {{{0, 0, 0, 1},
@@ -42,7 +42,7 @@ int main() {
     const std::string everything = everything_glb();
     write_file("everything.glb", everything);
     write_file("no_camera.glb", with(with(everything, "\"camera\": 0,", ""), "\"camera\": 1,", ""));
-    // So near a near plane that float depth ends in the middle of the scene.
+    // With a near plane this close, floats cannot tell depths apart in the scene's farther half.
     write_file("tiny_near.glb", with(everything, "\"znear\": 0.5", "\"znear\":6e-7"));
     write_file("empty.glb", "");
 }

@@ -15,7 +15,7 @@ namespace {
 
 using namespace lightbin;
 
-/// Larger than test::random_lights(), so that the same kernels are chosen for fewer of them, too.
+/// Larger lights than test::random_lights(), so that fewer make the library choose the same kernels.
 std::vector<glm::vec4> large_lights(std::size_t count) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
@@ -25,14 +25,14 @@ std::vector<glm::vec4> large_lights(std::size_t count) {
     return lights;
 }
 
-// The number of allocations in one call of work.
+// Returns the number of allocations in one call of `work`.
 std::size_t allocations_in(auto&& work) {
     const std::size_t before = allocations;
     work();
     return allocations - before;
 }
 
-// A scene, and a smaller one: fewer lights, fewer tiles.
+// A scene and its lights. A smaller scene has fewer lights and fewer tiles.
 struct Scene {
     View view;
     std::vector<glm::vec4> lights;
@@ -52,7 +52,7 @@ struct Scene {
     }
 };
 
-// Does all that a frame does with a Binner and a Budget, and returns the number of entries.
+// Makes a frame's lists by a Binner and cuts them by a Budget; returns the number of entries.
 template <Options options, class Id = typename Binner<options>::Id>
 std::size_t frame(Binner<options>& binner, Budget<Id>& budget, Scene& scene,
                   std::vector<ListRange>& ranges, std::vector<Id>& ids) {
@@ -78,7 +78,7 @@ template <Options options> void check_options() {
     Binner<options> binner;
     Budget<typename Binner<options>::Id> budget;
 
-    // The first frame must be seen to allocate, or the counter counts nothing.
+    // The first frame must allocate, otherwise the counter does not work.
     std::size_t entries = 0;
     CHECK(allocations_in([&] { entries += frame(binner, budget, scene, ranges, ids); }) > 0);
     entries += frame(binner, budget, scene, ranges, ids);
@@ -102,7 +102,7 @@ TEST_CASE("a warm Binner does not allocate, nor does a warm Budget") {
 
 TEST_CASE("nor does one that has threads and fewer lights the second time") {
     for (const std::size_t workers : {2u, 5u}) {
-        // One less than makes a number of even parts.
+        // One light less would give all threads parts of the same size.
         Scene scene(640, 360, workers * 1024);
         const Parallel parallel(workers, test::backwards);
         Binner<> binner;

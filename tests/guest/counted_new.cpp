@@ -24,7 +24,7 @@ void uncounted(void* memory) {
 
 }  // namespace
 
-// The array forms would call the others, but for those that a sanitizer brings.
+// By default the array forms call these; but a sanitizer has array forms of its own.
 void* operator new(std::size_t size) {
     return counted(std::malloc(size != 0 ? size : 1));
 }

@@ -1,4 +1,4 @@
-// The global operator new of the program, counted, and made to fail.
+// Replaces the program's operator new by one that counts, and that can be made to fail.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 /// How often it was called.
 extern std::size_t allocations;
 
-/// Counts down to the call that throws std::bad_alloc; 0: none does.
+/// The number of calls up to the one that throws std::bad_alloc; 0 if none shall throw.
 extern std::size_t allocations_left;
 
-/// How many blocks of memory it has given that are not freed.
+/// How many blocks of memory are allocated and not yet freed.
 extern long blocks;

@@ -20,7 +20,7 @@ using namespace lightbin;
 /// What the caller's own functions throw.
 struct Thrown {};
 
-/// Counts down to the event in the caller's functions that throws; 0: none does.
+/// The number of events in the user's functions up to the one that throws; 0 if none shall throw.
 std::size_t events_left = 0;
 
 void event() {
@@ -32,7 +32,7 @@ const auto as_sphere = [](const glm::vec4& light) {
     return Sphere{light.x, light.y, light.z, light.w};
 };
 
-/// A loop for Parallel that may throw before, between and after the calls.
+/// A user's loop for Parallel, which may throw before, between and after the calls.
 const auto run = [](std::size_t n, const auto& body) {
     event();
     while (n > 0) {
@@ -41,7 +41,7 @@ const auto run = [](std::size_t n, const auto& body) {
     }
 };
 
-/// Whether a call throws, at the given place, what is thrown there.
+/// Returns whether a call throws the expected exception at the given place.
 template <class Exception> bool throws(std::size_t& left, std::size_t place, const auto& call) {
     left = place;
     try {
@@ -62,7 +62,7 @@ struct Input {
     std::vector<float> min, max;
     Slices slices;
 
-    /// size  times those of test::random_lights()
+    /// size  factor for the radii of test::random_lights()
     Input(ImageSize viewport, int tile_size, std::size_t count, float size)
         : view(test::view(viewport, tile_size)), lights(test::random_lights(count, 7)),
           slices(*Slices::linear(static_cast<int>(count), 0, 40)) {
@@ -74,7 +74,7 @@ struct Input {
     ZBounds bounds() const { return {min, max}; }
 };
 
-/// What a Binner makes of a scene, as numbers.
+/// Returns the lists that a Binner makes of a scene, as numbers.
 template <Options options>
 std::vector<std::uint32_t> made(Binner<options>& binner, const Input& scene, const Parallel& parallel) {
     const auto inputs = inputs_for<options>(scene.bounds(), scene.slices);
@@ -88,8 +88,8 @@ std::vector<std::uint32_t> made(Binner<options>& binner, const Input& scene, con
     return words;
 }
 
-/// Tries every place, or one in `step`, in a Binner that is new and in one that has made lists. Returns how many there
-/// were.
+/// Makes an exception at each place, or at one in `step`, in a new Binner and in one that has made lists. Returns the
+/// number of places.
 template <class Exception, Options options>
 std::size_t survive(std::size_t& left, Isa isa, const Input& scene, const Input& less, const Parallel& parallel,
                     std::size_t step = 1) {
@@ -127,7 +127,7 @@ template <Options options> void check_options(Isa isa, const Input& scene, const
 }
 
 void check_tier(Isa isa) {
-    // Large lights and small ones; wide rows of tiles, for which lists are made in another way.
+    // Large and small lights, and wide rows of tiles, for which lists are made by another method.
     const Input scene({160, 104}, 8, 150, 3), less({160, 120}, 16, 40, 3);
     const Input scattered({160, 104}, 8, 40, 0.1f), wide({980, 24}, 4, 100, 3);
     check_options<Options{}>(isa, scene, less, true);
@@ -139,7 +139,7 @@ void check_tier(Isa isa) {
     check_options<Options{.depth_test = true, .slicing = Slicing::clusters}>(isa, scattered, less);
 }
 
-/// Every allocation of a function that keeps nothing.
+/// Makes each allocation of a function fail. The function must leave nothing behind.
 void check_function(const auto& text_of) {
     const std::string expected = text_of();
     std::size_t place = 1;

@@ -1,5 +1,5 @@
-// use_everything.cpp twice in one program, with different flags. Without an argument only the plain unit runs, which
-// every machine must be able to; with one both do, and get the same bytes.
+// Runs use_everything.cpp compiled with two sets of flags in one program. Without an argument only the unit with plain
+// flags runs, as on any machine; with an argument both run and must get the same bytes.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>

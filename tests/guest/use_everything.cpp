@@ -69,7 +69,7 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     std::vector<ListRange> ranges(grid.ranges().size());
     std::vector<Id> ids(grid.ids().size());
     hash.add(value_of(grid.copy_to(ranges, ids)));
-    // Not resize(), a function that both units of tests/guest/two_units.sh would have.
+    // Not resize(), because both units of tests/guest/two_units.sh would share the function.
     std::vector<ListRange> more_ranges(2 * ranges.size());
     std::vector<Id> more_ids(2 * ids.size());
     hash.add(value_of(grid.copy_to(more_ranges, more_ids, value_of(grid.copy_to(more_ranges, more_ids)))));
@@ -119,7 +119,7 @@ void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& li
     hash.add(value_of(plan_cull(view, {}, {static_cast<std::uint32_t>(lights.size()), 9})).bytes.scratch);
 }
 
-/// of_plan(plan) returns a number that its options make.
+/// Adds a number for each plan of the advice: of_plan(plan) returns it.
 void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
     double evaluations = 0;  // in any order: which plan is best depends on the machine
     for (const AdvicePlan& plan : advice.plans()) {
@@ -235,7 +235,7 @@ void use_view(Hash& hash, const View& view) {
 std::uint64_t UNIT() {
     Hash hash;
     const ImageSize viewport{200, 120};
-    // Written out, because what glm computes may differ with the flags.
+    // Written as numbers, because glm's results may differ with the flags.
     const glm::mat4 opengl(1.2f, 0, 0, 0, 0, 1.8f, 0, 0, 0, 0, -1.01f, -1, 0, 0, -0.2f, 0);
     const glm::dmat4 reversed(1.2, 0, 0, 0, 0, 1.8, 0, 0, 0.1, 0.2, 0, -1, 0, 0, 0.1, 0);
     const float infinite[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}};

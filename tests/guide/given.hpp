@@ -1,4 +1,4 @@
-// What the blocks of code in docs/ use without defining it: functions and objects of the reader's own renderer.
+// Declares what the code blocks in docs/ use without defining it: functions and objects of the reader's renderer.
 #pragma once
 
 #include <lightbin/lightbin.hpp>

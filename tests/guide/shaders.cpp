@@ -24,7 +24,7 @@ vec3 blend_decal(vec3 colour, uint id) { return mix(colour, shade(id), 0.5); }
 const uint first_spot = 10u, first_box = 20u, light_count = 30u;
 )";
 
-/// A shader of a block: what has no main() is the inside of one.
+/// Returns a whole shader with a code block. A block without main() is the body of main().
 std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
     const bool multiview = block.find("gl_ViewID_OVR") != std::string::npos;
     const auto snippet = lightbin::shader_snippet({.language = language,

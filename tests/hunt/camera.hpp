@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cameras of every kind, and the caller's way from view space to the caller's pixels.
+// Random cameras of every kind, and the user's computation from view space to pixels.
 #pragma once
 
 #include "random.hpp"
@@ -14,26 +14,26 @@
 
 namespace hunt {
 
-/// A projection as the caller has it, in clip space as the caller's graphics API has it.
+/// A projection matrix as a user has it, for the clip space of the user's graphics API.
 struct Camera {
     glm::dmat4 matrix = glm::dmat4(0);
-    bool in_float = false;  ///< the matrix is given as floats, and its entries are such
+    bool in_float = false;  ///< the matrix is given as floats, and its entries are floats
     lightbin::ImageSize viewport;
     lightbin::ViewOptions options;
     bool orthographic = false;
     long double toward = -1;             ///< view depth = toward * z
-    double near_hint = 0, far_hint = 0;  ///< about where the planes are; far may be infinite
+    double near_hint = 0, far_hint = 0;  ///< approximate depths of the planes; the far plane may be infinite
 };
 
-/// Makes a camera of any API: either depth range, reversed or not, mirrored or not. An ordinary camera is one that a
-/// renderer would have, so the library has to take it; others are extreme in some ways.
+/// Makes a camera of any API: either depth range, reversed or not, mirrored or not. If `ordinary`, the library must
+/// accept it; otherwise some of its numbers are extreme.
 inline Camera make_camera(bool ordinary, Random& random) {
     Camera camera;
     const bool orthographic = camera.orthographic = random.one_in(4);
     const auto extreme = [&](double least, double most) {
         return !ordinary && random.one_in(4) ? random.log_between(least, most) : 1;
     };
-    // Slopes of the window's edges, or their coordinates if orthographic; and depths.
+    // The slopes of the window's edges (orthographic: their coordinates), and the depths of the planes.
     const double half = std::tan(random.between(0.3, 1.2)) * (orthographic ? random.log_between(1, 1000) : 1) *
                         (orthographic ? extreme(1e-18, 1e18) : extreme(1e-7, 1e5)),
                  width = 2 * half * random.between(0.5, 2.5), height = 2 * half;
@@ -55,7 +55,7 @@ inline Camera make_camera(bool ordinary, Random& random) {
     camera.options.reversed_z = orthographic ? reversed : random.coin();  // read for orthographic ones alone
     camera.options.origin = random.coin() ? lightbin::WindowOrigin::lower_left : lightbin::WindowOrigin::upper_left;
 
-    // clip = w * ndc, with w = depth (perspective) or 1; all times a number that changes nothing.
+    // The matrix is that of clip = w * ndc, with w = depth (perspective) or 1, times a factor that changes nothing.
     const double scale = extreme(1e-20, 1e20), toward = random.sign();
     camera.toward = toward;
     const double x_scale = random.sign() * 2 / width, y_scale = random.sign() * 2 / height;
@@ -80,8 +80,8 @@ inline Camera make_camera(bool ordinary, Random& random) {
     return camera;
 }
 
-/// Gives the camera a viewport and a tile size: few tiles, one or none, or as many as the sides of a kernel's blocks,
-/// give or take one; the last tiles of a row or column are often partial.
+/// Gives the camera a viewport and a tile size: few tiles, one or none, or as many as a kernel works on at once, give
+/// or take one. The last tile of a row or column is often partial.
 inline void set_grid(Camera& camera, Random& random) {
     constexpr int most_side = lightbin::View::max_side;
     const int size = camera.options.tile_size =
@@ -106,11 +106,11 @@ inline void set_grid(Camera& camera, Random& random) {
 
 /// Where a point of view space is seen.
 struct Seen {
-    Real x, y;   ///< in pixels from the window origin
+    Real x, y;   ///< in pixels from the window's origin
     Real depth;  ///< view depth
 };
 
-/// Returns where a point is seen; nothing where it is out of the clip volume, or may be by rounding.
+/// Returns where a point is seen; nothing if it is outside of the clip volume or rounding leaves that open.
 inline std::optional<Seen> see(const Camera& camera, const RealPoint& point) {
     Real clip[4];
     for (int row = 0; row < 4; ++row) {
@@ -131,7 +131,7 @@ inline std::optional<Seen> see(const Camera& camera, const RealPoint& point) {
                 (up + 1) * half * static_cast<long double>(camera.viewport.height), Real(camera.toward) * point[2]};
 }
 
-/// About the point at a place in the window and a view depth: no promise goes with it.
+/// Returns a point that is seen near a place in the window and near a view depth; not exactly.
 inline Point point_at(const Camera& camera, long double x, long double y, long double depth) {
     const glm::dmat4& m = camera.matrix;
     const long double ndc_x = 2 * x / camera.viewport.width - 1;

@@ -29,7 +29,7 @@ namespace {
 using lightbin::Isa;
 using lightbin::Slicing;
 
-/// A point of a light that is surely seen, and surely in one tile.
+/// A point of a light that is certainly seen, and certainly in one tile.
 struct Placed {
     Inside inside;
     Seen seen;
@@ -39,10 +39,10 @@ struct Placed {
 struct Bounds {
     lightbin::ZBounds spans() const { return {sides[0], sides[1]}; }
 
-    std::vector<float> sides[2];  ///< minimum and maximum
+    std::vector<float> sides[2];  ///< minimum and maximum depth of each tile
 };
 
-/// Returns whether the bounds of a tile, beyond doubt, include a depth.
+/// Returns true only if a depth is certainly within the bounds of a tile.
 bool surely_within(const Bounds& bounds, std::size_t tile, Real depth) {
     const auto& [min, max] = bounds.sides;
     if (!min.empty() && !max.empty() && min[tile] > max[tile]) return false;
@@ -87,7 +87,7 @@ Bounds make_bounds(const lightbin::View& view, const std::vector<Placed>& points
     return bounds;
 }
 
-/// Makes slices by a law, or with boundaries anywhere, often at the points' depths or a float beside.
+/// Makes depth slices by a formula or with random boundaries, often at the points' depths or a float beside.
 lightbin::Slices make_slices(const std::vector<Placed>& points, int count, Random& random) {
     using lightbin::Slices;
     const float least = static_cast<float>(random.log_between(0x1p-10, 0x1p6)),
@@ -113,7 +113,7 @@ struct Input {
     const Scene& scene;
     const Bounds& bounds;
     const lightbin::Slices& slices;
-    std::uint64_t seed;  ///< of how the work is shared
+    std::uint64_t seed;  ///< for how work is divided among threads
 };
 
 /// A copy of a LightGrid, which lives on when its Binner makes another.
@@ -132,14 +132,14 @@ bool same(const Grid& a, const Grid& b) {
     return bytes(a.ranges, b.ranges) && bytes(a.ids, b.ids) && bytes(a.order, b.order) && bytes(a.bins, b.bins);
 }
 
-/// Calls with lights that are in view space, or with a matrix of floats or doubles.
+/// Calls a function with the lights in view space or, with a matrix of floats or doubles, in world space.
 template <class Call> auto with_lights(const Scene& scene, Call call) {
     if (!scene.in_world) return call(lightbin::view_space(scene.lights));
     if (scene.in_float) return call(lightbin::world_space(scene.lights, glm::mat4(scene.to_view)));
     return call(lightbin::world_space(scene.lights, scene.to_view));
 }
 
-/// Bins with a Binner that lives on from call to call, unless its grid is large.
+/// Makes lists with a Binner that is kept from call to call, unless the lists are large.
 template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& input, Isa isa) {
     static std::map<Isa, std::unique_ptr<lightbin::Binner<options>>> binners;
     std::unique_ptr<lightbin::Binner<options>>& binner = binners[isa];
@@ -193,13 +193,13 @@ template <Slicing slicing> lightbin::Result<Grid> bin_masks(const Input& input, 
     return out;
 }
 
-/// A Binner's options, or masks.
+/// One set of a Binner's options, or masks; and what was found with it.
 struct BinnerKind {
     std::string name;
     bool depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bin_on)(const Input&, Isa);
-    std::uint64_t points = 0;  ///< that were looked for
+    std::uint64_t points = 0;  ///< number of points that were looked for
 
     template <bool depth_test, Slicing slicing> static BinnerKind of() {
         return {std::string(depth_test ? "depth test, " : "") + to_string(slicing),
@@ -242,7 +242,7 @@ public:
         }
         if (!view) return;
         view_ = &*view;
-        // As many lights as fill a block of a kernel, give or take one; few that cover all where there are many tiles.
+        // Numbers of lights about as large as a kernel works on at once; few large ones if there are many tiles.
         const std::uint32_t lights = random_.pick(
             {0u,   1u,   2u,   3u,   7u,   8u,   9u,   16u,   31u,   33u,   63u,    64u,    65u,    100u,
              127u, 129u, 255u, 256u, 257u, 300u, 513u, 1000u, 4097u, 8193u, 65535u, 65536u, 65537u, 131073u});
@@ -260,7 +260,7 @@ public:
     }
 
 private:
-    /// Shrinks lights, and in the end drops some, while their rectangles cover more tiles than a round has time for.
+    /// Shrinks lights, and finally drops some, as long as they cover more tiles than a round has time for.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
@@ -277,7 +277,7 @@ private:
 
     void fault(const std::string& what) { faults_.push_back(what + ", in " + name_); }
 
-    /// Keeps the points that are surely in their light, surely in view and surely in one tile.
+    /// Keeps the points that are certainly in their light, in view and in one tile.
     void place_points() {
         for (const Inside& point : scene_.inside) {
             if (point.light >= scene_.lights.size() || !surely_inside(scene_.lights[point.light], point.point))
@@ -299,7 +299,7 @@ private:
         }
     }
 
-    /// Looks into one grid of the kind. Grids of other instruction sets and numbers of threads must be the same bytes.
+    /// Looks for all points in one grid. Other instruction sets and numbers of threads must make the same bytes.
     void hunt(BinnerKind& kind, bool costly) {
         const bool clusters = kind.slicing == Slicing::clusters;
         const bool few = clusters && view_->tile_count() * scene_.lights.size() > 20'000;
@@ -430,6 +430,6 @@ int main(int count, char** words) {
         std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name.c_str());
         all_had_points = all_had_points && kind.points > 0;
     }
-    // A few rounds may have no point for a kind: 200 must.
+    // In a few rounds some kind of grid may get no point at all; in 200 rounds each must get one.
     return !faults.empty() || (done >= 200 && !all_had_points);
 }

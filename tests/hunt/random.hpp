@@ -27,7 +27,7 @@ public:
     /// 0 to 1.
     double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
     double between(double least, double most) { return least + (most - least) * unit(); }
-    /// Positive numbers, each power of two as likely as another.
+    /// Returns a positive number; each power of two between the limits is as likely.
     double log_between(double least, double most) { return std::exp2(between(std::log2(least), std::log2(most))); }
     double sign() { return coin() ? 1 : -1; }
 
@@ -36,7 +36,7 @@ public:
     }
 };
 
-/// A float that nobody would pass: signed zeros, denormals, powers of two, the ends of the range, infinity, NaN.
+/// Returns a float that few users would pass: signed zeros, denormals, powers of two, FLT_MAX, infinity, NaN.
 inline float nasty_float(Random& random) {
     using Limits = std::numeric_limits<float>;
     const float value = random.pick({0.0f, Limits::denorm_min(), Limits::min(), Limits::max(), Limits::infinity(),
@@ -46,7 +46,7 @@ inline float nasty_float(Random& random) {
     return random.coin() ? value : -value;
 }
 
-/// The nearest float that is not below (not above) a number, whatever rounding the conversion does.
+/// Returns the nearest float that is not below (or not above) a number, in any rounding mode.
 inline float float_up(long double value) {
     const float nearest = static_cast<float>(value);
     return static_cast<long double>(nearest) < value ? std::nextafter(nearest, infinite) : nearest;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers that know how wrong they may be: long double with a bound on the error, carried through every step.
+// Numbers with an error bound: long double, and a limit of the error that every operation carries on.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace hunt {
 
-/// Something within `error` of `value`. A step rounds by half of LDBL_EPSILON; a whole one is counted, which leaves
-/// room for the rounding of the bound itself.
+/// A number within `error` of `value`. An operation rounds by half of LDBL_EPSILON; a full LDBL_EPSILON is added, which
+/// leaves room for rounding of the bound itself.
 struct Real {
     Real() = default;
     Real(long double exactly) : value(exactly) {}
@@ -44,7 +44,7 @@ inline Real operator/(Real a, Real b) {
             ((a.error + std::fabs(quotient) * b.error) / least + LDBL_EPSILON * std::fabs(quotient)) *
                 (1 + 8 * LDBL_EPSILON)};
 }
-/// Beyond doubt. False for NaN.
+/// Returns true only if a is certainly less than b; false for NaN.
 inline bool surely_less(Real a, Real b) {
     return a.high() < b.low();
 }

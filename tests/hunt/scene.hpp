@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights made to be missed, in view space or in a world of the caller's, and points inside them.
+// Random lights that are easily missed, in view space or in a world space, and points inside them.
 #pragma once
 
 #include "camera.hpp"
@@ -12,16 +12,16 @@ namespace hunt {
 using lightbin::Sphere;
 using Long = long double;
 
-/// A point inside a light, in the space of the lights.
+/// A point inside a light, in the space in which the lights are given.
 struct Inside {
     std::uint32_t light;
     Point point;
 };
 
 struct Scene {
-    bool in_world = false;  ///< the lights are given in world space, with `to_view`
+    bool in_world = false;  ///< the lights are given in world space, with the matrix `to_view`
     glm::dmat4 to_view = glm::dmat4(1);
-    bool in_float = false;  ///< that matrix is given as floats
+    bool in_float = false;  ///< the matrix is given as floats
     std::vector<Sphere> lights;
     std::vector<Inside> inside;
 };
@@ -45,17 +45,17 @@ inline Point direction(Random& random) {
     }
 }
 
-/// By the words of the library: in no list, as bad input or as switched off.
+/// Returns whether the documentation says that no list has this light: it is bad input or switched off.
 inline bool is_unlit(const Sphere& light) {
     return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0);
 }
 
-/// By the words of the library: skipped and counted.
+/// Returns whether the documentation calls this light bad input, which is skipped and counted.
 inline bool is_bad(const Sphere& light) {
     return is_unlit(light) && light.radius != -1;
 }
 
-/// Whether a point is in a sphere, surface included, beyond doubt.
+/// Returns true only if a point is certainly in a sphere or on its surface.
 inline bool surely_inside(const Sphere& light, const Point& point) {
     if (is_unlit(light)) return false;
     if (light.radius == infinite) return true;
@@ -82,8 +82,8 @@ inline RealPoint in_view_space(const Scene& scene, const Point& point) {
     return moved;
 }
 
-/// Makes a world's matrix: turned, mirrored, scaled, sheared, squashed or flat, near its origin or far from it, or none
-/// of these.
+/// Makes a world-to-view matrix: rotated, mirrored, scaled, sheared or flat, near its origin or far from it, or the
+/// identity.
 inline glm::dmat4 make_world(double reach, Random& random) {
     glm::dmat4 m(1);
     for (int mirror = 0; mirror < 2 && !random.one_in(4); ++mirror) {  // two make a rotation
@@ -111,7 +111,7 @@ class Maker {
 public:
     Maker(const Camera& camera, Scene& scene, Random& random) : camera_(camera), scene_(scene), random_(random) {
         if (!scene.in_world) return;
-        // The cofactors of the matrix over its determinant.
+        // The inverse: the cofactors of the matrix over its determinant.
         const glm::dmat4& m = scene.to_view;
         const auto at = [&](int row, int column) { return static_cast<Long>(m[column % 3][row % 3]); };
         const auto cofactor = [&](int row, int column) {
@@ -127,7 +127,7 @@ public:
                 inverse_[row][column] = cofactor(static_cast<int>(column), static_cast<int>(row)) / determinant;
     }
 
-    /// Makes `count` lights. At most `large` of them may cover the whole window, the others some tiles.
+    /// Makes `count` lights. At most `large` of them may cover the whole window; the others cover some tiles.
     void make_lights(std::uint32_t count, std::uint32_t large) {
         const bool seen = camera_.viewport.width > 0 && camera_.viewport.height > 0 && regular_;
         for (std::uint32_t id = 0; id < count; ++id) {
@@ -142,7 +142,7 @@ public:
         }
         if (large == 0) return;
         if (random_.coin()) scene_.lights[random_.below(std::size_t{large})].radius = infinite;
-        // Large lights may be anywhere among the small ones.
+        // The large lights replace some lights anywhere among the small ones.
         for (std::uint32_t i = 0; large < count && i < std::min(large, 64u); ++i) {
             const std::uint32_t j = static_cast<std::uint32_t>(random_.below(std::size_t{count}));
             std::swap(scene_.lights[i], scene_.lights[j]);
@@ -151,8 +151,8 @@ public:
         }
     }
 
-    /// Appends points of some lights: the middle, any, and the extremes on screen; and points all over the view with
-    /// the lights that they are in.
+    /// Adds points of some lights: the centre, random points, and points that are seen farthest out; also random points
+    /// in view with the lights around them.
     void find_points() {
         const std::uint32_t count = static_cast<std::uint32_t>(scene_.lights.size()), some = std::min(count, 3000u);
         if (count == 0 || camera_.viewport.width == 0 || camera_.viewport.height == 0) return;
@@ -173,7 +173,7 @@ public:
     }
 
 private:
-    /// From view space to the space of the lights, about. A matrix that has no inverse leaves the point where it is.
+    /// Moves a point from view space to the lights' space, about. Without an inverse matrix it stays in place.
     Point from_view(const Point& p) const {
         if (!scene_.in_world || !regular_) return p;
         const glm::dvec4& moved = scene_.to_view[3];
@@ -181,7 +181,7 @@ private:
         return {dot(inverse_[0], q), dot(inverse_[1], q), dot(inverse_[2], q)};
     }
 
-    /// A view depth to put something at: anywhere, or right at the planes.
+    /// Returns a view depth for a light or point: random, or right at the near or far plane.
     Long pick_depth() {
         const Long near_depth = camera_.near_hint, far_depth = camera_.far_hint,
                    step = random_.log_between(0x1p-45, 0x1p-3);
@@ -199,8 +199,8 @@ private:
                         pick_depth());
     }
 
-    /// A light that holds a chosen point of a tile, but hardly more: the point is beside an edge or a corner of the
-    /// tile, or none, and the light lies beyond that edge, before or behind the point, or anywhere.
+    /// Returns a light that barely contains a point of a tile. The point is often beside an edge or a corner of the
+    /// tile, with the light beyond that edge, or before or behind the point.
     Sphere touching(bool small, Point& point) {
         const int size = camera_.options.tile_size, sides[] = {camera_.viewport.width, camera_.viewport.height};
         int outward[2];
@@ -217,7 +217,7 @@ private:
         const Long depth = pick_depth();
         const Point seen_at = point_at(camera_, at[0], at[1], depth);
 
-        // Square to the planes through the eye and the tile's edges, and along the depth.
+        // Directions at right angles to the planes through the eye and the tile's edges, and the direction of depth.
         Point away = {0, 0, random_.pick({0.0, 0.0, random_.between(-1, 1)})};
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (outward[axis] == 0) continue;
@@ -236,7 +236,7 @@ private:
         if (!(length(away) > 0)) away = direction(random_);
         away = plus({}, away, 1 / length(away));
 
-        // About a tile's width there, as a radius whose light covers few tiles.
+        // About a tile's width at that depth: a light with this radius covers few tiles.
         const Long across = std::fabs(point_at(camera_, at[0] + size, at[1], depth)[0] - seen_at[0]),
                    up = std::fabs(point_at(camera_, at[0], at[1] + size, depth)[1] - seen_at[1]),
                    slope = camera_.orthographic ? 0 : length({seen_at[0], seen_at[1], 0}) / std::fabs(seen_at[2]),
@@ -248,7 +248,7 @@ private:
         return holding(seen_at, away, std::min(1e-4L * tile_reach, most), most, point);
     }
 
-    /// Of some lights of the point and a direction, the one whose rounding makes it the least larger than needed.
+    /// Makes lights that contain the point, in one direction from it; returns the one that rounding enlarges least.
     Sphere holding(const Point& in_view, const Point& away, Long least, Long most, Point& point) {
         point = from_view(in_view);
         Sphere best = {};
@@ -267,7 +267,7 @@ private:
         return best;
     }
 
-    /// A light anywhere, tiny or huge; some around the eye, of numbers that nobody would pass, or there twice.
+    /// Returns a random light, tiny or huge; some are around the eye, with special numbers, or twice in the same place.
     Sphere any_light() {
         if (random_.one_in(12) && !scene_.lights.empty()) return scene_.lights[random_.below(scene_.lights.size())];
         const Point at = any_point();
@@ -285,7 +285,7 @@ private:
                 static_cast<float>(radius)};
     }
 
-    /// The point of a light that is seen farthest in a direction of the window, as far as trying finds it.
+    /// Returns the point of a light that is seen farthest in a direction of the window, found by trying.
     Point extreme_point(const Sphere& light) {
         const Long inner = static_cast<Long>(light.radius) * (1 - random_.log_between(0x1p-50, 0x1p-10));
         const Point goal = direction(random_);
@@ -310,10 +310,10 @@ private:
     bool regular_ = true;
 };
 
-/// Makes `count` lights, of which `large` may cover the whole window, and points in them.
+/// Makes `count` lights, at most `large` of which may cover the whole window, and points inside them.
 inline Scene make_scene(const Camera& camera, std::uint32_t count, std::uint32_t large, Random& random) {
     Scene scene;
-    // What a matrix adds to a radius is large where all else is next to nothing: not with many lights.
+    // Where everything else is tiny, a matrix' margin makes radii large, so these scenes get few lights.
     if (random.one_in(4) || (large < count && std::fabs(camera.near_hint) < 1e-30)) {
         Maker(camera, scene, random).make_lights(count, large);
         return scene;

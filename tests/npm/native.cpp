@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// native FILE: writes to FILE what tests/npm/module.mjs gives to the npm package too, and the lists that this machine's
-// library makes of it: blocks of bytes, each after its length as 32 bits, in the order in which module.mjs reads them.
+// native FILE: writes to FILE the inputs that tests/npm/module.mjs gives to the npm package, and the lists that the
+// native library makes: blocks of bytes, each after its length in 32 bits, in the order of module.mjs.
 #include <lightbin/lightbin.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ template <class Number> void write_numbers(std::initializer_list<Number> numbers
     write_block(numbers.begin(), numbers.size() * sizeof(Number));
 }
 
-/// One of the structs that begin with their size.
+/// Returns one of the structs whose first member is their size, with that size set.
 template <class Struct> Struct sized() {
     Struct made = {};
     made.size = sizeof made;
@@ -57,7 +57,7 @@ float random_between(float low, float high) {
 
 float spheres[SPHERES][4], spots[SPOTS][12], boxes[BOXES][16], nearest[TILES], farthest[TILES];
 
-/// A centre and a radius, most of them in front of a camera that is at (3, 1, 10) and looks down -z.
+/// Writes a random sphere: centre and radius. Most are in front of the camera at (3, 1, 10), which looks down -z.
 void fill_sphere(float* to) {
     to[0] = random_between(-45, 50);
     to[1] = random_between(-25, 30);
@@ -81,7 +81,7 @@ void fill_inputs() {
         for (int j = 7; j < 16; ++j)
             box[j] = random_between(-3, 3);
     }
-    // Bad input, and a light that reaches everything.
+    // Makes one light bad input, and another one infinitely large.
     spheres[7][0] = spheres[8][3] = std::numeric_limits<float>::infinity();
     for (int i = 0; i < TILES; ++i) {
         nearest[i] = random_between(0.1f, 40);
@@ -89,7 +89,7 @@ void fill_inputs() {
     }
 }
 
-/// Spheres in view space, or with a camera, all kinds in world space.
+/// Returns spheres in view space or, if a camera is given, lights of all kinds in world space.
 lightbin_lights lights_of(const double* camera) {
     auto lights = sized<lightbin_lights>();
     const auto part = [](const auto& array, int at) { return lightbin_floats{array[0] + at, sizeof array[0]}; };
@@ -163,7 +163,7 @@ int main(int count, char** names) {
     write_block(farthest, sizeof farthest);
     write_block(lightbin_slices_boundaries(slices), 16 * sizeof(float));
 
-    // Each way to bin, in the order of module.mjs.
+    // Makes lists in each way that there is, in the order of module.mjs.
     auto bounds = sized<lightbin_z_bounds>();
     bounds.min = nearest;
     bounds.max = farthest;
@@ -242,7 +242,7 @@ int main(int count, char** names) {
         succeed(lightbin_reduce_shader(&options, &shader));
         write_text(shader);
     }
-    // What shaders that make the lists of lights on the GPU need, and their texts.
+    // Writes what shaders that make lists on the GPU need, and their texts.
     for (const int slicing : {LIGHTBIN_NO_SLICING, LIGHTBIN_CLUSTERS}) {
         const bool sliced = slicing != LIGHTBIN_NO_SLICING;
         const lightbin_matrix to_view = {nullptr, camera, LIGHTBIN_COLUMN_MAJOR, 0};

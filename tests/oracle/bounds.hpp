@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Z bounds for the tests of the depth test, and slices.
+// Random minimum and maximum depths of tiles for tests of the depth test, and depth slices.
 #pragma once
 
 #include "spheres.hpp"
@@ -20,13 +20,13 @@ struct Bounds {
 
 enum class BoundsShape {
     random,
-    plane,  ///< grow from tile to tile, like a ground seen at an angle
-    tips,   ///< where a light's nearest or farthest point is, its depth, give or take an ulp: minimum and
+    plane,  ///< depth grows from tile to tile, like ground seen at an angle
+    tips,   ///< the depth of a light's nearest or farthest point, give or take an ulp: minimum and
             ///< maximum alike
 };
 
-/// Bounds for every tile of the camera; a few of any shape are infinite, the wrong way round, or those of an
-/// empty tile.
+/// Makes depth bounds for every tile; a few are infinite, have the minimum above the maximum, or stand for an empty
+/// tile.
 inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vector<Light>& lights,
                           BoundsShape shape, Random& random) {
     constexpr float inf = std::numeric_limits<float>::infinity();
@@ -67,8 +67,8 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
     return bounds;
 }
 
-/// Boundaries of which every second one is where a light begins or ends, as floats have it, or a hair beside; the
-/// others anywhere.
+/// Makes slices. Every second boundary is at or just beside a depth where a light begins or ends; the others are
+/// random.
 inline lightbin::Slices slices_at_ends(const Aim& aim, const std::vector<Light>& lights, Random& random) {
     std::vector<float> boundaries;
     for (std::size_t i = 0; i < 5 && !lights.empty(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes, and balls cut by boxes: no miss, on every camera kind, with and without depth test, in view and world
-// space.
+// No list lacks a box, or a sphere cut by a box, that it should have: for every kind of camera, with and without depth
+// test, in view and world space.
 #include "boxes.hpp"
 #include "shape_proof.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace oracle {
 
-/// World-space boxes that land, more or less, where a set wants them in view space.
+/// Returns world-space boxes that a view matrix moves about where they are wanted in view space.
 static std::vector<BoxLight> into_world(std::vector<BoxLight> lights, const ViewMatrix& view) {
     for (BoxLight& b : lights) {
         std::vector<Light> points = {{b.x, b.y, b.z, b.radius}, {b.centre[0], b.centre[1], b.centre[2], 0}};
@@ -35,9 +35,9 @@ using namespace oracle;
 namespace {
 
 struct BoxTally : ShapeTally {
-    std::uint64_t settled = 0;  ///< cells that do not meet the box beyond doubt, in double precision
-    std::uint64_t exact = 0;    ///< cells decided in rationals: those that are not settled, and some that are
-    std::uint64_t twice = 0;    ///< of the exact ones, those by both deciders
+    std::uint64_t settled = 0;  ///< cells that certainly do not meet the box, decided in double precision
+    std::uint64_t exact = 0;    ///< cells decided in rational numbers, some as a check of double precision
+    std::uint64_t twice = 0;    ///< of these, the cells that both methods of oracle.hpp decided
 };
 
 std::vector<lightbin::Box> as_boxes(const std::vector<BoxLight>& lights) {
@@ -81,8 +81,8 @@ struct Boxes {
                 boxes_.push_back(is_bad(light) ? FlatBox{} : flat_box(light, to_camera));
         }
 
-        /// Answers in double precision if that settles the question, else in rationals. One in 97 settled questions is
-        /// also decided in rationals, and one in 97 decisions in rationals is also made by the second decider.
+        /// Decides in double precision if possible, else in rational numbers. One in 97 of the former is checked in
+        /// rational numbers, and one in 97 of the latter by a second method.
         template <class Planes>
         std::optional<bool> meets(std::size_t i, const Block& tiles, const FlatDepths& depths,
                                   const Planes& planes_of) {

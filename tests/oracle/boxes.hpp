@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sets of boxes, as spheres.hpp has sets of spheres: aimed in double precision in the camera's own axes; the box that
-// is asked about is the float one that comes out.
+// Random sets of boxes, as spheres.hpp has sets of spheres. Positions are computed in double in the camera's axes;
+// tests then use the rounded float box.
 #pragma once
 
 #include "spots.hpp"
@@ -46,7 +46,7 @@ using namespace spots;
 /// Half axes in the camera's axes.
 using Frame = std::array<Triple, 3>;
 
-/// Three directions of length 1 at right angles, often along the camera's axes or towards the eye.
+/// Returns three directions at right angles, of length 1, often along the camera's axes or towards the eye.
 inline Frame frame(const Triple& at, Random& random) {
     const Triple first = axis(at, random), second = across(first, random);
     Frame f = {first, second, glm::cross(first, second)};
@@ -57,7 +57,7 @@ inline Frame frame(const Triple& at, Random& random) {
 inline Frame sized(const Frame& f, double a, double b, double c) {
     return {plus({}, f[0], a), plus({}, f[1], b), plus({}, f[2], c)};
 }
-/// Half axes of about the given size: cubes, slabs, rods; now and then flat, of no width, thin, or at any angles.
+/// Returns half axes of about this size: cubes, slabs, rods; sometimes flat, of no width, thin, or at odd angles.
 inline Frame half_axes(const Triple& at, double size, Random& random) {
     const auto some = [&](double least = -4, double most = 0) { return size * random.power_of_two(least, most); };
     if (random.chance(0.2)) {
@@ -90,7 +90,7 @@ inline BoxLight box(const Aim& aim, const Light& ball, const Triple& centre, con
     }
     return b;
 }
-/// With the sphere around its corners, or one that covers everything.
+/// Returns a box whose sphere holds all corners, or is so large that it does not cut the box.
 inline BoxLight whole(const Aim& aim, Random& random, const Triple& centre, const Frame& f, double taper) {
     double most = 0;
     for (int i = 0; i < 4; ++i) {
@@ -111,7 +111,7 @@ inline BoxLight cut(const Aim& aim, Random& random, const Light& ball, double ta
         at = plus(at, h, random.chance(0.3) ? random.sign() : random.uniform(-1.2, 1.2));
     return box(aim, ball, at, f, taper);
 }
-/// In a ball of a set of spheres, or cut by it.
+/// Returns a box in, or cut by, a sphere that `sphere` makes.
 template <auto sphere> BoxLight in_ball(const Aim& aim, Random& random) {
     const Light ball = sphere(aim, random);
     if (random.chance(0.5)) return cut(aim, random, ball, some_taper(random));
@@ -119,7 +119,7 @@ template <auto sphere> BoxLight in_ball(const Aim& aim, Random& random) {
     return whole(aim, random, c, half_axes(c, static_cast<double>(ball.w), random), some_taper(random));
 }
 
-/// The eye in the box, on a face of it or a hair off, or in the plane of one.
+/// Returns a box with the eye inside, on a face or just beside it, or in the plane of a face.
 inline BoxLight around_eye(const Aim& aim, Random& random) {
     const double size = aim.unit * random.power_of_two(-4, 14);
     const Frame f = half_axes({0, 0, 1}, size, random);
@@ -135,7 +135,7 @@ inline BoxLight around_eye(const Aim& aim, Random& random) {
     return box(aim, aim.light(c[0], c[1], c[2], size * random.power_of_two(-3, 1)), at, f, some_taper(random));
 }
 
-/// A corner, an edge or a face in the near plane, or a hair off it.
+/// Returns a box with a corner, an edge or a face in the near plane or just beside it.
 inline BoxLight at_near(const Aim& aim, Random& random) {
     const double n = aim.near_plane, size = aim.unit * random.power_of_two(-6, 12);
     Frame f = half_axes({0, 0, 1}, size, random);
@@ -149,7 +149,7 @@ inline BoxLight at_near(const Aim& aim, Random& random) {
     return box(aim, aim.light(at[0], at[1], at[2], size * random.power_of_two(-3, 1)), at, f, 1);
 }
 
-/// Just touches a tile's cell with a corner of the box, or misses that by 2^-k of its size.
+/// Returns a box a corner of which just touches a tile's cell, or misses it by 2^-k of the box's size.
 inline BoxLight touching(const Aim& aim, Random& random) {
     auto [at, n, size] = on_cell(aim, random);
     const Frame f = half_axes(at, size, random);
@@ -161,7 +161,7 @@ inline BoxLight touching(const Aim& aim, Random& random) {
     return box(aim, aim.light(c[0], c[1], c[2], size * random.power_of_two(-1, 1)), at, f, some_taper(random));
 }
 
-/// A face in the plane of a tile's edge, which holds the eye, or a hair off it.
+/// Returns a box with a face in, or just beside, the plane through the eye and a tile's edge.
 inline BoxLight along_edge(const Aim& aim, Random& random) {
     const double d = aim.depth(random), h = aim.half_height(std::max(d, aim.unit));
     const int i = random.integer(0, 1);
@@ -193,7 +193,7 @@ inline BoxLight huge(const Aim& aim, Random& random) {
     return box(aim, spheres::field(aim, random), at, f, some_taper(random));
 }
 
-/// The frustum of a projector, pyramids among them.
+/// Returns a box that is the frustum of a projector; some are pyramids.
 inline BoxLight projector(const Aim& aim, Random& random) {
     const Light ball = spheres::field(aim, random);
     const Triple eye = spots::centre(aim, ball);

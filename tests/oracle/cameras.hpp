@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every camera kind that is promised to work, by name.
+// Every kind of camera that the library promises to support, by name.
 #pragma once
 
 #include "../../bench/exact/camera.hpp"
@@ -11,13 +11,13 @@
 
 namespace oracle {
 
-/// What a projection matrix is made from. Extents are those of the image plane at depth 1 (perspective) or of
+/// What a projection matrix is made from. Extents are measured in the image plane at depth 1 (perspective) or across
 /// the box (orthographic), x to the right, y up.
 struct Lens {
     double left = 0, right = 0, bottom = 0, top = 0;
     double near_plane = 0.1, far_plane = 1000;  ///< far may be infinite
     bool orthographic = false;
-    bool looks_up_z = false;  ///< +z is forward ("left-handed"); otherwise -z
+    bool looks_up_z = false;  ///< +z is forward ("left-handed"); otherwise -z is
     bool zero_to_one = false;
     bool reversed = false;
     double factor = 1;  ///< times the whole matrix
@@ -58,8 +58,8 @@ inline Matrix projection(const Lens& lens) {
     return m;
 }
 
-/// Viewport, tile size and window origin: whole tiles, odd sizes with partial last tiles on both sides,
-/// one-pixel tiles, a tile that does not divide anything, one tile larger than the screen.
+/// Viewport, tile size and window origin: sizes with and without partial last tiles, tiles of one pixel, a tile size
+/// that divides nothing, and one tile larger than the screen.
 struct Screen {
     int width, height, tile;
     bool upper_left;
@@ -88,8 +88,8 @@ inline Camera camera_of(const std::string& name, const Lens& lens, const Screen&
             lens.orthographic && lens.reversed};
 }
 
-/// A kind of camera: a lens on the first screen and one of the next four, which take turns with the length of the name;
-/// or on every screen.
+/// A kind of camera: one lens on the first screen and on one of the next four (chosen by the name's length), or on
+/// every screen.
 struct CameraKind {
     std::string name;
     Lens (*lens_of)(double aspect);
@@ -105,7 +105,7 @@ struct CameraKind {
                                         (screen.upper_left ? " upper left" : " lower left"),
                                     lens_of(aspect_of(screen)), screen));
         }
-        // 90 degrees and a power-of-two grid: tile edges with slopes such as 3/4, which a ball can touch exactly.
+        // 90 degrees and a power of two of pixels: edges have slopes such as 3/4, which a sphere can touch exactly.
         if (every_screen)
             all.push_back(camera_of(name + " 90 degrees", {-1, 1, -1, 1, 0.125, 512}, {256, 256, 32, false}));
         return all;
@@ -128,7 +128,7 @@ inline Lens box_lens(double aspect, double half_height) {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A symmetric lens of so many degrees, or a box of so much height, with a change.
+/// Returns a symmetric lens with this angle, or an orthographic box of this height, changed by `change`.
 template <int degrees, auto change> Lens symmetric(double aspect) {
     Lens lens = symmetric_lens(aspect, degrees);
     change(lens);

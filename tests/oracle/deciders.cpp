@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The deciders of bench/exact against each other, and what they answer where the answer is known. No part of the
-// library takes part. tests/spot_verdicts holds those of spots and boxes against a million verdicts of before.
+// Compares the methods of bench/exact, which decide in exact arithmetic whether a light meets a cell, with each other
+// and with known answers. No part of the library takes part. tests/spot_verdicts repeats a million earlier answers.
 #include "families.hpp"
 #include "spots.hpp"
 
@@ -19,7 +19,7 @@ struct Tally {
     int cells = 0, met = 0, empty = 0, filtered = 0;
 };
 
-/// Slabs, half-spaces and, where it has an answer, double precision: about a tile, or more, and any light.
+/// Compares two exact methods and, where it has an answer, double precision: for random blocks of tiles and lights.
 void compare(const Scene& scene, Random& random, Tally& tally) {
     Truth truth(scene.camera);
     const Oracle& oracle = truth.oracle;
@@ -92,7 +92,7 @@ TEST_CASE("the deciders of balls agree") {
 }
 
 TEST_CASE("spots: certificates that prove nothing") {
-    // Range 5, half angle 60 degrees, along z. Exact numbers: 3-4-5 is within it.
+    // A spot of range 5 and half angle 60 degrees along z: a point at distances 3 and 4 is exactly within it.
     const ExactSpot spot = exact_spot(0, 0, 0, 5, 0, 0, 7, 0.5f);
     const auto cell = box({-9, -9, -9}, {9, 9, 9});
     CHECK(proves_meeting(cell, spot, {}));
@@ -131,7 +131,7 @@ TEST_CASE("spots and balls: one point is enough") {
     const float above = std::nextafter(1.0f, 2.0f), below = std::nextafter(1.0f, 0.0f),
                 over_2 = std::nextafter(2.0f, 3.0f), below_3 = std::nextafter(3.0f, 0.0f);
     std::vector<Row> rows = {
-        // Rays that end in the cell, pass by its edge and its corner.
+        // Thin rays that end in the cell, or pass by its edge and its corner.
         {true, {-2, 1.5f, 1.5f}, 3, {5, 0, 0}, 1},
         {false, {-2, 1.5f, 1.5f}, below_3, {5, 0, 0}, 1},
         {true, {0, 3, 1.5f}, 9, {1, -1, 0}, 1},
@@ -140,14 +140,14 @@ TEST_CASE("spots and balls: one point is enough") {
         {true, {0, 2, 1.5f}, 9, {1, -1, 0}, 1},
         {false, {0, 2, 1.5f}, 9, {1, -above, 0}, 1},
         {true, {0, 2, 1.5f}, 9, {1, -below, 0}, 1},
-        // Balls, and cones that are no obstacle to theirs.
+        // Whole spheres, and wide cones that cut nothing off their sphere.
         {true, {0, 1, 1}, 1, {-1, 0, 0}, -1},
         {true, {0, 1, 1}, INFINITY, {-1, 0, 0}, 1},
         {false, {0, 1, 1}, below, {-1, 0, 0}, -1},
         {true, {-2, 1.5f, 1.5f}, 3, {1, 0.5f, 0.25f}, 0.5f},
         {false, {-2, 1.5f, 1.5f}, below_3, {1, 0.5f, 0.25f}, 0.5f},
         {false, {-2, 1.5f, 1.5f}, 3, {1, 1.5f, 0.25f}, 0.75f},
-        // Half balls, and beyond 90 degrees balls that end at the plane of the rim: its distance is rounded.
+        // Half spheres, and spots beyond 90 degrees, which end at the plane of their rim: its distance is rounded.
         {true, {0, 1, 1}, 1, {3, 0, 0}, 0},
         {false, {0, 1, 1}, 1, {-3, 0, 0}, 0},
         {true, {2, 1.5f, 1.5f}, 1, {3, 0, 0}, 0},
@@ -163,7 +163,7 @@ TEST_CASE("spots and balls: one point is enough") {
                                  {false, {1, 1, below}, 0, {1, 1, 1}, cosine},
                                  {true, {2, 1.5f, 1.5f}, 3, {1, 0, 0}, cosine},
                                  {false, {over_2, 1.5f, 1.5f}, 3, {1, 0, 0}, cosine}});
-    // The apex on a side of the cell, or a hair off it, and the cone all but the half-space in front of that side.
+    // The apex is on a side of the cell or just beside it, and the cone almost the half-space before that side.
     for (const float cosine : {0x1p-149f, 0x1p-54f, 0x1p-20f})
         for (const float range : {2.0f, 0x1p24f, FLT_MAX})
             rows.insert(rows.end(), {{false, {1, 1, 0}, range, {-1, 0, 0}, cosine},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// reduce_depth against exact view depths, on every instruction set: every sample, and every fragment that may have left
-// it, lies within its tile's bounds, and the bounds are no wider than float rounding and the format's step explain.
+// Compares reduce_depth() with exact view depths on every instruction set: a tile's bounds hold every sample and every
+// depth that may have left it, and are no wider than rounding to float and the format's step explain.
 #include "harness.hpp"
 
 #include <set>
@@ -25,7 +25,7 @@ Rational step_of(DepthFormat format) {
     return 0;
 }
 
-/// The float next to a number: the nearest (0), one that is not above (-1), or not below (1).
+/// Returns the float next to a number: the nearest one (direction 0), or the one not above (-1) or not below (1).
 float float_next_to(const Rational& value, int direction) {
     float best = static_cast<float>(value.convert_to<double>());
     for (const float other : {std::nextafter(best, -inf), std::nextafter(best, inf)})
@@ -33,8 +33,8 @@ float float_next_to(const Rational& value, int direction) {
     return direction * (of(best) - value) < 0 ? std::nextafter(best, static_cast<float>(direction) * inf) : best;
 }
 
-/// What reading the depth buffer back gives for a fragment: one of the format's two values beside it, as one of the two
-/// floats beside that; a denormal float may be flushed to zero.
+/// Returns what a depth buffer may hold for a fragment: one of the format's two neighbouring values, as one of the two
+/// neighbouring floats; denormal floats may become zero.
 float stored(const Rational& fragment, DepthFormat format, Random& random) {
     const int rounding = random.integer(-1, 1);
     if (format == DepthFormat::float32) {
@@ -47,7 +47,7 @@ float stored(const Rational& fragment, DepthFormat format, Random& random) {
     return float_next_to(Rational(whole) * step_of(format), random.integer(-1, 1));
 }
 
-/// View depth in the affinely extended numbers: nothing is +infinity.
+/// A view depth; no value is +infinity.
 using Depth = std::optional<Rational>;
 
 bool below(float bound, const Depth& depth) {  // bound <= depth
@@ -65,7 +65,7 @@ struct Counts {
     std::uint64_t samples = 0, tiles = 0, unknown = 0, empty = 0, endless = 0, outside = 0, loose = 0;
 };
 
-/// A depth buffer of every style a tile at a time, and what a rasteriser should never leave in one.
+/// Returns a sample in one of several styles, also values that no rasteriser should leave.
 float odd_sample(Random& random, int style) {
     const double styles[] = {random.uniform(),
                              1 - random.power_of_two(-24, 0),  // far away, or close if Z is reversed
@@ -112,14 +112,14 @@ public:
             examine_tile(tile, in_tile[tile], format);
     }
 
-    /// Reduces a depth buffer of one sample a tile. The fragment that left a sample need not have exactly the stored
-    /// depth, but its depth must lie within the tile's bounds.
+    /// Reduces a depth buffer with one sample in each tile. A fragment's depth may differ a little from the stored one;
+    /// it must lie within the tile's bounds.
     void fragments(DepthFormat format, Random& random) {
         std::vector<Rational> fragment;
         std::vector<float> depth;
         const int steps = format == DepthFormat::unorm16 ? (1 << 16) - 1 : (1 << 24) - 1;
         for (std::size_t tile = 0; tile < view_.tile_count(); ++tile) {
-            // Half way between two steps, or a hair off it; just above 1/2 floats are as coarse as they get.
+            // A depth half way between two steps of the format, or just beside it; above 1/2 floats are coarsest.
             const auto half_way = [&](int step) {
                 return (step + Rational(1) / 2) / steps + exact(random.sign() * std::exp2(-random.integer(40, 60)));
             };
@@ -185,7 +185,7 @@ private:
                 ++counts_.samples;
                 if (!contains(tile, oracle_.view_depth(window)))
                     report(counts_.outside, "sample outside", tile, static_cast<double>(sample), format);
-                // A float that is one ulp off, as the documentation allows for.
+                // The next float: the documentation allows that a sample is off by one ulp.
                 if (format != DepthFormat::float32 || !(sample >= FLT_MIN && sample < 1)) continue;
                 for (const float end : {0.0f, 1.0f})
                     if (!contains(tile, oracle_.view_depth(of(std::nextafter(sample, end)))))
@@ -211,7 +211,7 @@ private:
         };
         const Depth least = oracle_.view_depth(reversed_ ? further(highest, 1) : further(lowest, -1));
         const Depth most = oracle_.view_depth(reversed_ ? further(lowest, -1) : further(highest, 1));
-        // The number line ends at FLT_MAX, from which bounds are infinite.
+        // Floats end at FLT_MAX; a bound beyond is infinite.
         const bool min_tight = least ? above(min_[tile], *least - abs(*least) / (1 << 22)) : min_[tile] > 0;
         const bool max_tight = most ? below(max_[tile], *most + abs(*most) / (1 << 22)) : true;
         counts_.endless += !most && max_[tile] == inf;

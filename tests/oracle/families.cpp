@@ -13,8 +13,8 @@ int main(int count, char** words) {
     std::size_t wrong = 0;
     for (const Family& family : all_families()) {
         Verdicts verdicts;
-        // 500 lights a scene, for a good balance between cameras and lights; and then 1 to 70, so that blocks of tiles have
-        // as many as a vector or a word, give or take one.
+        // Scenes of 500 lights, to have many cameras and many lights; then scenes of 1 to 70, about as many as a vector
+        // or a word of bits has.
         const std::uint64_t large = (lights + 499) / 500;
         for (std::uint64_t seed = 0; seed < large + 70; ++seed) {
             Random random(seed_of(family.name) + seed * 0x9e3779b97f4a7c15u);

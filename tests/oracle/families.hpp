@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Families of stiff and extreme inputs, each a named generator of whole scenes: camera, lights, Z bounds. Repeatable
-// from a seed; aimed in double precision, and only aimed: what is asked about are the floats that come out.
+// Families of hard and extreme inputs. Each generates whole scenes (camera, lights, depth bounds of tiles) from a seed.
+// Positions are computed in double; tests then use the rounded floats.
 #pragma once
 
 #include "bounds.hpp"
@@ -17,12 +17,12 @@ namespace oracle {
 struct Scene {
     Camera camera;
     std::vector<Light> lights;
-    std::vector<float> min, max;  ///< one a tile, or none
+    std::vector<float> min, max;  ///< one for each tile, or none
 };
 
 namespace families {
 
-/// Mostly a few dozen tiles, often partial at the end; now and then more than a supertile engine takes.
+/// Returns a screen, mostly of a few dozen tiles, often partial at the end; sometimes of very many tiles.
 inline Screen any_screen(Random& random) {
     static constexpr int sizes[] = {1, 2, 7, 8, 16, 32, 57, 64, 256};
     const int tile = sizes[random.integer(0, 8)];
@@ -34,7 +34,7 @@ inline Screen any_screen(Random& random) {
     return {side(13), side(9), tile, random.chance(0.5)};
 }
 
-/// The settings of APIs and engines, in any combination.
+/// Returns the lens with a random combination of the settings that graphics APIs and engines have.
 inline Lens any_settings(Lens lens, Random& random) {
     lens.near_plane = random.power_of_two(-10, 3);
     lens.far_plane = random.chance(0.2) ? infinite : lens.near_plane * random.power_of_two(2, 16);
@@ -75,14 +75,14 @@ inline Lens any_lens(double aspect, Random& random) {
     return random.chance(0.15) ? orthographic(aspect, random) : perspective(aspect, random);
 }
 
-/// Lights of all the stiff sets.
+/// Returns a light of a random one of the sets in spheres.hpp.
 inline Light any_light(const Aim& aim, Random& random) {
     const std::vector<SphereSet>& sets = sphere_sets();
     return sets[static_cast<std::size_t>(random.integer(0, static_cast<int>(sets.size()) - 1))].one(aim,
                                                                                                     random);
 }
 
-/// What no rasteriser leaves, but a caller may.
+/// Returns a depth that no rasteriser leaves, but that a user may pass.
 inline float special_depth(Random& random) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     static constexpr float values[] = {
@@ -100,7 +100,7 @@ inline void set_bounds(Scene& scene, const Aim& aim, Random& random, double spec
             if (random.chance(specials)) depth = special_depth(random);
 }
 
-/// A scene of one camera and `count` lights of one kind.
+/// Makes a scene with one camera and `count` lights of one kind.
 template <class MakeLens, class MakeLight>
 Scene scene_of(Random& random, std::size_t count, const MakeLens& make_lens, const MakeLight& make_light,
                double specials = 0.01) {
@@ -128,8 +128,8 @@ inline Scene specials(Random& random, std::size_t count) {
     return scene_of(random, count, any_lens, spheres::special, 0.3);
 }
 
-/// Tangent, from outside, to a face, an edge or a vertex of a cell between its Z bounds: what depth tests
-/// decide on.
+/// Spheres that touch a face, an edge or a corner of a tile's cell from outside, between the tile's least and greatest
+/// depth: hard for the depth test.
 inline Scene cell_faces(Random& random, std::size_t count) {
     Scene scene = scene_of(random, 0, any_lens, spheres::field);
     const Aim aim(scene.camera);
@@ -164,7 +164,7 @@ inline Scene cell_faces(Random& random, std::size_t count) {
     return scene;
 }
 
-/// Coordinates, radii or whole scenes at the bottom of the number line.
+/// Scenes with denormal numbers: as coordinates, as radii or for everything.
 inline Scene denormals(Random& random, std::size_t count) {
     const bool whole = random.chance(0.5);
     const auto lens = [&](double aspect, Random& r) {
@@ -238,8 +238,8 @@ inline Scene off_centre(Random& random, std::size_t count) {
     return scene_of(random, count, lens, any_light);
 }
 
-/// Tile edges in the planes through the axis, up to rounding, and small spheres beside them: what an edge's
-/// position lost when the image's offset was taken from it, no relative error makes up for.
+/// The view axis lies almost at a tile's edge, with small spheres beside it. The edge's position lost digits when the
+/// image's offset was subtracted, which no relative error covers.
 inline Scene axis_edges(Random& random, std::size_t count) {
     Scene scene = scene_of(random, 0, any_lens, spheres::field);
     Camera& camera = scene.camera;
@@ -256,7 +256,7 @@ inline Scene axis_edges(Random& random, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         const double d = aim.depth(random), at = std::max(std::abs(d), aim.unit);
         const double r = at * random.power_of_two(-60, -8);
-        // Tangent to one edge, or to the corner where both meet.
+        // Lights that touch one edge, or the corner where both meet.
         const double angle = random.uniform(0, std::acos(0.0)), parts[] = {std::cos(angle), std::sin(angle)};
         const int only = random.integer(-1, 1);
         const double away = r * (1 + random.sign() * std::exp2(-random.integer(1, 40)));
@@ -271,7 +271,7 @@ inline Scene axis_edges(Random& random, std::size_t count) {
     return scene;
 }
 
-/// The most tiles: lists of all would not fit into memory, so there are no Z bounds, either.
+/// The greatest number of tiles. Lists of all tiles would not fit into memory, so there are no depth bounds.
 inline Scene most_tiles(Random& random, std::size_t count) {
     Scene scene{camera_of("", any_lens(1, random), {32768, 32768, 1, random.chance(0.5)}), {}, {}, {}};
     const Aim aim(scene.camera);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks the oracle about the library's lists: how many entries they have that exact arithmetic would not list.
+// Compares the library's lists with exact arithmetic: counts entries that exact arithmetic would not list.
 #pragma once
 
 #include "library_view.hpp"
@@ -30,7 +30,7 @@ inline Ball exact_ball(const Light& light) {
     return exact_ball(light.x, light.y, light.z, light.w);
 }
 
-/// The tiles whose lists hold a light: both ends included; `entries` of them.
+/// The rectangle of tiles whose lists have a light, first and last included, and the number of these entries.
 struct Emitted {
     int x0 = 1 << 20, y0 = 1 << 20, x1 = -1, y1 = -1;
     std::int64_t entries = 0;
@@ -48,8 +48,8 @@ inline std::vector<Block> blocks_around(const Emitted& e, int nx, int ny) {
     return blocks;
 }
 
-/// Turns lists a tile into tiles a light, checking what every grid must be: tiles in order without gaps, ids
-/// ascending.
+/// Turns a list for each tile into a set of tiles for each light. Checks that tiles are in order without gaps, and ids
+/// ascend.
 template <class Id>
 std::vector<Emitted> emitted_tiles(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
     std::vector<Emitted> emitted(lights);
@@ -85,7 +85,7 @@ std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, s
     return in;
 }
 
-/// Reads the lists of tiles from masks; with z-bins in[bin and tile][light], tiles in each bin.
+/// Reads the lights of each tile from masks; with z-bins in[bin and tile][light], tile by tile in each bin.
 inline std::vector<std::vector<bool>> membership(const lightbin::LightMasks& masks, std::size_t lights) {
     std::vector<std::vector<bool>> in;
     const lightbin::BinRange every_light[] = {{0, 0xffffffff}};
@@ -102,12 +102,12 @@ inline std::vector<std::vector<bool>> membership(const lightbin::LightMasks& mas
     return in;
 }
 
-/// All questions about one camera.
+/// Answers all questions about the lights and tiles of one camera.
 class Examiner {
 public:
     explicit Examiner(const Camera& camera) : truth(camera), oracle(truth.oracle), sides_{side(0), side(1)} {
-        // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an orthographic one
-        // is not cut.
+        // The library cuts a sphere at the near plane, rounded to float, if it is a perspective; never at the far
+        // plane.
         if (!oracle.orthographic()) beyond_near_.at_least(*oracle.range().min * (1 - Rational(1) / (1 << 22)));
     }
 
@@ -121,8 +121,8 @@ public:
         return {seen, {nearly(seen.x), nearly(seen.y), nearly(seen.depth), ball.all ? INFINITY : nearly(ball.radius)}};
     }
 
-    /// The depths of a tile between two bounds, infinite where there is none, and within near and far. In rationals
-    /// once double precision leaves a question open.
+    /// The depths of a tile's cell between two bounds (infinite if there is none) and between the near and far plane.
+    /// Rational numbers are used if double precision leaves a question open.
     class Cell {
     public:
         Cell(const Examiner& examiner, float low = -INFINITY, float high = INFINITY)
@@ -143,13 +143,13 @@ public:
         mutable std::optional<Depths> depths_;
     };
 
-    /// Returns true only if the light's sphere surely does not meet a block of tiles between the depths of a cell.
+    /// Returns true only if the light's sphere certainly does not meet a block of tiles between the cell's depths.
     bool apart(const Block& b, const Cell& cell, const FlatBall& ball) {
         return truth.filter.apart(b.x0, b.x1, b.y0, b.y1, cell.flat, ball);
     }
 
-    /// Whether a rectangle lacks a column or a row that the method has: one whose wedge is met, if any row or column is
-    /// met at all.
+    /// Returns whether a light's rectangle lacks a column or row whose wedge of space the sphere meets, if it meets
+    /// some row or column at all.
     bool lacks_some(const Subject& s, const Emitted& e) {
         const int nx = oracle.tiles_x(), ny = oracle.tiles_y();
         const auto ball = [&]() -> const CameraBall& { return s.seen; };
@@ -160,15 +160,15 @@ public:
         return (wider && rows(0, ny)) || (taller && columns(0, nx));
     }
 
-    /// Whether the outermost columns and rows of a rectangle are met, give or take rounding.
+    /// Returns whether the sphere meets the outermost columns and rows of its rectangle, allowing for rounding.
     bool explained(const Subject& s, const Emitted& e) {
         if (s.seen.all) return true;
         if (!depths_within(s, oracle.range().min, oracle.range().max)) return false;
-        // Where the circle in the near plane is tiny its size is all rounding, of the radius in double precision.
+        // Where the sphere's circle in the near plane is tiny, its size is mostly rounding error of the radius.
         CameraBall ball = s.seen;
         ball.radius *= 1 + Rational(1) / (std::int64_t{1} << 40);
-        // What double precision gets wrong is nothing beside the margins. The depths hold all of a ball that a
-        // rectangle is made of: beyond the near plane of a perspective, and not cut elsewhere.
+        // Errors of double precision are far smaller than the library's margins. The depths include all of the sphere
+        // that its rectangle is made from: the part beyond the near plane, or for orthographic cameras everything.
         const double reach = s.flat.radius * s.flat.radius, end = 2 * (std::abs(s.flat.depth) + s.flat.radius);
         const FlatDepths flat = {oracle.orthographic() ? -end : truth.range.min, end};
         const auto column = [&](int x) {
@@ -183,10 +183,10 @@ public:
                (eye_on_surface(ball.y, ball) || (row(e.y0) && row(e.y1)));
     }
 
-    /// z - r to z + r meets the bounds, the sums in float arithmetic.
+    /// Returns whether the sphere's depths, z - r to z + r rounded to float, overlap the tile's bounds.
     bool depths_within(const Subject& s, const std::optional<Rational>& min,
                        const std::optional<Rational>& max) const {
-        // What double precision gets wrong is nothing beside the allowance below.
+        // Errors of double precision are far smaller than the tolerance below.
         if ((!min || s.flat.depth + s.flat.radius >= nearly(*min)) &&
             (!max || s.flat.depth - s.flat.radius <= nearly(*max)))
             return true;
@@ -196,9 +196,9 @@ public:
                (!max || s.seen.depth - s.seen.radius - rounding <= *max + abs(*max) / (1 << 22));
     }
 
-    /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
-    /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
-    /// What double precision gets wrong is nothing beside the margins, so it is asked first.
+    /// Returns whether the sphere meets the box around the tile's cell between these depths, within twice the margins
+    /// that the library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Double precision is tried
+    /// first: its errors are far smaller.
     bool box_meets(const Subject& s, int x, int y, const Cell& cell) {
         if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
         if (cell.empty) return false;
@@ -209,7 +209,7 @@ public:
         const auto outside = [](const Rational& low, const Rational& high, const Rational& c) {
             return std::max({Rational(low - c), Rational(c - high), Rational(0)});
         };
-        // No maximum: far beyond the sphere a line can only have left it, or be there still.
+        // Without a maximum: far beyond the sphere, a line of the cell has left it for good or never leaves it.
         const Depths& depths = cell.depths();
         const Rational near = grown(*depths.min, -1);
         const Rational far = grown(depths.max ? *depths.max : Rational(*depths.min + exact(FLT_MAX)), 1);
@@ -218,9 +218,8 @@ public:
             const Slab& slab = side.slabs[static_cast<std::size_t>(at)];
             const Rational low = std::min(slab.low.at(near), slab.low.at(far)),
                            high = std::max(slab.high.at(near), slab.high.at(far));
-            // The offset of the image is off by 2^-48 of its parts, wherever the edge is. Twice that of the parts that
-            // the position of an edge in tiles is made from, in slopes or coordinates; a column may be a partial one,
-            // then it is less than a tile.
+            // The image's offset has an error of 2^-48 of its parts. Twice that is allowed, of the parts that an edge's
+            // position in tiles is computed from, in slopes or coordinates; a partial column is less than a tile.
             const Rational size = abs(slab.high.slope - slab.low.slope) + abs(slab.high.offset - slab.low.offset),
                            off = size * side.offset_in_tiles / (std::int64_t{1} << 47) *
                                  (oracle.orthographic() ? Rational(1) : std::max(abs(near), abs(far)));
@@ -235,11 +234,11 @@ public:
     const Oracle& oracle;
 
 private:
-    /// The columns (axis 0) or rows of tiles, as they are and with the image-plane margin that rounding explains, in
-    /// pixels. The library states 16 u (|O| + tiles) tiles, u = 2^-24, for its error and adds as much: twice that.
+    /// Columns (axis 0) or rows of tiles, and the margin that rounding explains, in pixels. The library states an error
+    /// of 16 u (|O| + tiles) tiles (u = 2^-24, O: the image's offset), and adds as much: twice that.
     struct Side {
         std::vector<Slab> slabs, grown;
-        Rational offset_in_tiles;  ///< |O| + tiles + 1
+        Rational offset_in_tiles;  ///< |offset| + number of tiles + 1
     };
     Side side(int axis) const {
         const int tiles = axis == 0 ? oracle.tiles_x() : oracle.tiles_y();
@@ -257,8 +256,8 @@ private:
         return made;
     }
 
-    /// Returns whether double precision cannot tell if the eye is in the disc of a light, so that any slope may be in
-    /// its image.
+    /// Returns whether double precision cannot tell if the eye is inside a sphere's disc, whose image may then have any
+    /// slope.
     bool eye_on_surface(const Rational& c, const CameraBall& ball) const {
         const Rational squares = square(c) + square(ball.depth), radius = square(ball.radius);
         return !oracle.orthographic() && abs(squares - radius) * (1 << 29) < squares + radius;

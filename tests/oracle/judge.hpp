@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Holds a scene's light lists, without and with the depth test, and its masks, without and with z-bins, against the
-// exact truth: the filter's proof where it has one, else rationals. And every instruction set, and the caller's
-// threads, against the scalar ones.
+// Compares a scene's lists, without and with depth test, and its masks, without and with z-bins, with exact arithmetic.
+// Also compares every instruction set, and work divided among threads, with the scalar code.
 #pragma once
 
 #include "families.hpp"
@@ -22,10 +21,10 @@
 namespace oracle {
 
 struct Verdicts {
-    std::uint64_t proven = 0;  ///< "the ball does not meet this tile, between its bounds", or these in a row
-    std::uint64_t exact = 0;   ///< of these, decided by rationals
+    std::uint64_t proven = 0;  ///< proofs that a sphere does not meet a tile (or several) between its depth bounds
+    std::uint64_t exact = 0;   ///< of these, decided by rational numbers
     std::uint64_t misses = 0;
-    std::vector<std::string> reports;  ///< the first few, and whatever else was wrong
+    std::vector<std::string> reports;  ///< the first misses, and other complaints
 };
 
 class Judge {
@@ -46,7 +45,7 @@ public:
     template <bool depth_test> void judge() {
         using lightbin::Isa;
         const Lists lists = built<depth_test>(Isa::scalar);
-        // An Isa is a cap: one that the machine lacks would be a narrower one again.
+        // An Isa sets an upper limit: one that the machine lacks would run a narrower one again.
         for (const Isa isa : {Isa::simd128, Isa::avx2, Isa::avx512})
             if (lightbin::machine_isa(isa) == isa && built<depth_test>(isa) != lists)
                 complain(to_string(isa) + std::string(" differs"));
@@ -88,7 +87,7 @@ public:
         in_rectangle_ = std::move(in);
     }
 
-    /// A light must not meet columns and rows whose masks lack it, nor any tile at the depths of a bin that lacks it.
+    /// Proves that lights do not meet columns and rows whose masks lack them, nor tiles in z-bins that lack them.
     void judge_masks(bool with_bins) {
         using lightbin::Isa, lightbin::MaskBinner;
         Random random(scene_.lights.size());
@@ -154,7 +153,7 @@ private:
         constexpr lightbin::Options options = {.depth_test = depth_test};
         thread_local std::map<lightbin::Isa, lightbin::Binner<options>> binners;
         lightbin::Binner<options>& binner = binners.try_emplace(isa, isa).first->second;
-        // The caller's threads at their least helpful: one of them, which takes the work from the end.
+        // The worst order in which threads may work: one thread does everything, from the end.
         auto run = [](std::size_t n, auto body) {
             while (n > 0)
                 body(--n);
@@ -172,7 +171,7 @@ private:
         return lists;
     }
 
-    /// That a light does not meet tiles whose lists lack it, between bounds, of which NaN is none.
+    /// Proves that a light does not meet tiles whose lists lack it, between depth bounds; NaN is no bound.
     void prove(std::size_t i, const Block& tiles, float min, float max) {
         const double low = static_cast<double>(min), high = static_cast<double>(max);
         const FlatDepths depths = {low > truth_.range.min ? low : truth_.range.min,

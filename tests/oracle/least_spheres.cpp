@@ -38,7 +38,7 @@ bool good(const lightbin::Sphere& sphere) {
     return !is_bad({sphere.x, sphere.y, sphere.z, sphere.radius});
 }
 
-/// All of the spot's points are in the sphere.
+/// Returns whether the sphere holds all points of the spot.
 bool holds(const Ball& sphere, const lightbin::Spot& spot) {
     const Vector q = sphere.centre - Vector{exact(spot.x), exact(spot.y), exact(spot.z)},
                  axis = {exact(spot.axis_x), exact(spot.axis_y), exact(spot.axis_z)};
@@ -51,12 +51,12 @@ bool holds(const Ball& sphere, const lightbin::Spot& spot) {
                          2 * r * c * along);
 }
 
-/// What rounding to floats may add to a radius: 2^-22 of the sizes, and 2^-123.
+/// Returns what rounding to floats may add to a radius: 2^-22 of these sizes, and 2^-123.
 Rational allowance(const Rational& sizes) {
     return sizes / (1 << 22) + exact(0x1p-123);
 }
 
-/// A number of any size from 2^low to 2^high, now and then 0.
+/// Returns a random number between 2^low and 2^high, sometimes 0.
 float number(Random& random, double low, double high) {
     return random.chance(0.05) ? 0.0f : static_cast<float>(random.sign() * random.power_of_two(low, high));
 }
@@ -120,7 +120,7 @@ TEST_CASE("tubes and rectangles: the sphere holds them, and is the least but for
         const auto exactly = [](const Point& p) { return Vector{exact(p.x), exact(p.y), exact(p.z)}; };
         const float radius = std::abs(coordinate());
         const Rational r = exact(radius);
-        // Convex: its corners are enough. The sphere must reach `radius` beyond each.
+        // Convex shapes: if their corners are inside, all is. The sphere must reach `radius` beyond each corner.
         const auto check = [&](const lightbin::Sphere& sphere, const std::vector<Vector>& corners,
                                const Rational& half2) {
             REQUIRE(good(sphere));

@@ -16,7 +16,7 @@ inline lightbin::Result<lightbin::View> library_view(const Camera& camera) {
     options.origin =
         camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
     options.reversed_z = camera.reversed;
-    // The entries are floats unless the camera says otherwise, so nothing changes on the way to double.
+    // The matrix has float entries unless the camera says otherwise, so conversion to double changes nothing.
     return lightbin::View::from_projection(camera.m, {camera.width, camera.height}, options);
 }
 

@@ -43,19 +43,19 @@
 namespace oracle {
 
 struct ShapeTally {
-    std::uint64_t verdicts = 0;  ///< "this light does not meet these cells", each proven
-    std::uint64_t by_shape = 0;  ///< of these, not by the ball alone
+    std::uint64_t verdicts = 0;  ///< proofs that a light does not meet certain cells
+    std::uint64_t by_shape = 0;  ///< of these, proofs that need the shape, not only its sphere
     std::uint64_t open = 0, misses = 0;
-    std::uint64_t explained = 0;    ///< of tight kinds: rectangles and listed pairs that were asked about
-    std::uint64_t unexplained = 0;  ///< of these, such as the method does not give
-    std::uint64_t below = 0;        ///< rectangles that lack what the method gives
+    std::uint64_t explained = 0;    ///< if Kind::tight: rectangles and listed pairs that were checked
+    std::uint64_t unexplained = 0;  ///< of these, those that the library's method does not explain
+    std::uint64_t below = 0;        ///< rectangles that lack tiles of the library's method
     struct Set {
         std::uint64_t by_shape = 0, open = 0;
     };
     std::map<std::string, Set> sets;
 };
 
-/// The half-spaces of a cell in the space of the lights: world space if a matrix is given.
+/// The half-spaces of a cell in view space or, if a view matrix is given, in world space.
 class CellPlanes {
 public:
     CellPlanes(const Oracle& oracle, const ViewMatrix* matrix) : oracle_(oracle) {
@@ -75,7 +75,7 @@ private:
     std::optional<ExactView> world_;
 };
 
-/// Lights of a kind before a camera, in view space or, with a matrix, in world space.
+/// Lights of one kind in front of a camera, in view space or, with a view matrix, in world space.
 template <class Kind> class Subjects {
 public:
     using Lights = std::vector<typename Kind::Light>;
@@ -91,7 +91,7 @@ public:
                                            : examiner.subject(exact_ball(Kind::ball(light))).flat);
     }
 
-    /// Lists of these tiles lack a light: it must not meet their cell.
+    /// The lists of these tiles lack a light: proves that the light does not meet their cell.
     void ask(std::size_t i, const Block& tiles, const Examiner::Cell& cell, const std::string& rung,
              const std::string& set) {
         if (tally_.misses > 20) return;  // rationals take long, and nothing is left to prove
@@ -125,12 +125,12 @@ private:
     std::vector<FlatBall> balls_;
 };
 
-/// Calls bin() with lights, as they are or in world space.
+/// Calls bin() with lights in view space or, if a matrix is given, in world space.
 template <class Any, class Bin> auto bin_in(const std::vector<Any>& lights, const ViewMatrix* matrix, Bin bin) {
     return matrix ? bin(lightbin::world_space(lights, matrix->m)) : bin(lightbin::view_space(lights));
 }
 
-/// in[cell][light], cells in the order of slices: of z-bins those lights of the tile's list that are in the bin.
+/// Returns in[cell][light], slice by slice. With z-bins it has the lights of a tile's list that are in the bin.
 template <lightbin::Options options, class Grid>
 std::vector<std::vector<bool>> membership_of(const Grid& grid, std::size_t lights) {
     if constexpr (options.slicing != lightbin::Slicing::z_bins) {
@@ -272,9 +272,9 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
         judge(beside, Kind::beside * most);
         judge(others, Kind::others * most);
 
-        // Only lights of the rectangle are listed, and of these only those whose depths meet the bounds and, under a
-        // depth test, whose sphere the box. The depths of a light may reach FLT_MAX, where boxes end, and then meet a
-        // bound beyond.
+        // Lists have only lights whose rectangle has the tile, whose depths meet the tile's bounds and, under a depth
+        // test, whose sphere meets the box around the cell. If a light's depths reach FLT_MAX, where boxes end, it also
+        // meets bounds beyond.
         if constexpr (Kind::tight && options.slicing != lightbin::Slicing::z_bins) {
             if (matrix) continue;
             std::vector<Examiner::Subject> balls;
@@ -319,8 +319,8 @@ void examine_all(const Camera& camera, const ViewMatrix* matrix, std::size_t mos
     with.template operator()<Options{.slicing = Slicing::z_bins}>();
 }
 
-/// Before one kind of camera, or in world space with every kind of view matrix: once, or as often as LIGHTBIN_ROUNDS
-/// says. Checks what all kinds of light must pass.
+/// Tests one kind of camera, or world space with every kind of view matrix, once or as often as LIGHTBIN_ROUNDS says,
+/// and checks what holds for all kinds of light.
 template <class Kind> void prove(const std::string& name, const std::vector<Camera>& cameras) {
     const bool in_world = cameras.empty();
     const char* const asked = std::getenv("LIGHTBIN_ROUNDS");
@@ -348,7 +348,7 @@ template <class Kind> void prove(const std::string& name, const std::vector<Came
     Kind::check(tally);
 }
 
-/// All kinds of camera and world space, or those that LIGHTBIN_CAMERAS names.
+/// Tests all kinds of camera and world space, or those named by LIGHTBIN_CAMERAS.
 template <class Kind> void prove_all() {
     const char* const only = std::getenv("LIGHTBIN_CAMERAS");
     bool found = false;

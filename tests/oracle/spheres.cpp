@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spheres: no miss, on every camera kind, with and without depth test, in view and world space; and no excess beyond
-// what rectangles, depths and boxes explain.
+// No list lacks a sphere that it should have: for every kind of camera, with and without depth test, in view and world
+// space. Nor has a list more than rectangles, depths and boxes explain.
 #include "shape_proof.hpp"
 #include "spheres.hpp"
 
@@ -39,9 +39,9 @@ struct Spheres {
             return std::none_of(planes.begin(), planes.end(), beyond) && oracle::meets(planes, ball);
         }
 
-        /// A ball in view space whose rectangle explains the light's. A rotation and scale gives the ball back, but for
-        /// the rounding of its matrix and of the moved centre; other maps none. A centre that leaves the range of float
-        /// is taken to be everywhere.
+        /// Returns a sphere in view space whose rectangle explains that of the light. A rotation and scale gives the
+        /// moved sphere, allowing for rounding; other maps give none. If the moved centre is no finite float, the
+        /// sphere is everywhere.
         std::optional<Ball> as_seen(std::size_t i) const {
             const Ball& ball = balls_[i];
             if (matrix_ == nullptr) return ball;

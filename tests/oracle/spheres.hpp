@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sphere sets, each a named generator, repeatable from the camera and a seed. They are aimed in double
-// precision, and aim is all they need: the sphere that is asked about is the float one that comes out.
+// Sets of spheres, each made by a function of that name from a camera and a seed. Positions are computed in double;
+// tests then use the rounded float sphere.
 #pragma once
 
 #include "../split_mix.hpp"
@@ -50,8 +50,7 @@ inline std::uint64_t seed_of(const std::string& name) {
     return hash;
 }
 
-/// Where things are for a camera, in its own axes: image coordinates that grow with pixels, depth that grows
-/// with distance.
+/// Places in front of a camera, in its own axes: image coordinates grow with pixels, depth grows with distance.
 class Aim {
 public:
     explicit Aim(const Camera& of) : camera(of) {
@@ -82,7 +81,7 @@ public:
         const Matrix& m = camera.m;
         return sign_[2] * (ndc(axis, pixel) * m[2][3] - up(axis) * m[2][axis]) / std::abs(m[axis][axis]);
     }
-    /// The pixel that an image coordinate at a depth falls on.
+    /// Returns the pixel on which an image coordinate at this depth falls.
     double pixel_of(int axis, double coordinate, double depth) const {
         const double low = at(axis, 0, depth), high = at(axis, side(axis), depth);
         return (coordinate - low) / (high - low) * side(axis);
@@ -92,7 +91,7 @@ public:
     }
     int side(int axis) const { return axis == 0 ? camera.width : camera.height; }
 
-    /// A tile edge inside the viewport or at its border.
+    /// Returns the position of a random tile edge in the viewport or at its border.
     double tile_edge(int axis, Random& random) const {
         const int tiles = (side(axis) + camera.tile - 1) / camera.tile;
         return std::min(random.integer(0, tiles) * camera.tile, side(axis));
@@ -120,8 +119,8 @@ public:
     Camera camera;
     bool orthographic;
     double near_plane, far_plane;
-    double unit;           ///< a length that matters: near plane distance, or a piece of the orthographic box
-    double deepest = 1e4;  ///< how many near plane distances away depth() may be
+    double unit;           ///< a typical length: the near plane's distance, or a part of an orthographic box
+    double deepest = 1e4;  ///< depth() returns up to this many near plane distances
 
 private:
     double up(int axis) const { return axis == 1 && camera.upper_left ? -1 : 1; }
@@ -133,7 +132,7 @@ private:
     double sign_[3];
 };
 
-/// Moves each number a few ulps either way, often not at all.
+/// Moves each number by a few ulps up or down, often by none.
 inline Light nudged(Light light, Random& random) {
     const auto nudge = [&](float v) {
         for (int steps = random.integer(-2, 2), i = 0; i < std::abs(steps); ++i)
@@ -148,7 +147,7 @@ inline Light nudged(Light light, Random& random) {
 
 namespace spheres {
 
-/// In and around the frustum, radius a tenth of the image's height there.
+/// Returns a light in or around the frustum with a radius of about a tenth of the image's height there.
 inline Light field(const Aim& aim, Random& random) {
     const double d = aim.depth(random) * (random.chance(0.1) ? -1 : 1);
     const double at = std::max(std::abs(d), aim.unit);
@@ -169,7 +168,7 @@ inline Light near_eye(const Aim& aim, Random& random) {
                      u * 2 * spread * std::exp(0.7 * random.normal()));
 }
 
-/// Just reaches the near plane from one side of it: pokes through, or stays short of it, by 2^-k of its size.
+/// Returns a sphere that reaches through the near plane from one side, or stays short of it, by 2^-k of its size.
 template <bool from_behind> Light touching_near(const Aim& aim, Random& random) {
     const double r = aim.unit * random.power_of_two(-12, 20);
     const double poke = random.sign() * r * std::exp2(-random.integer(1, 40));
@@ -180,7 +179,7 @@ template <bool from_behind> Light touching_near(const Aim& aim, Random& random) 
                   random);
 }
 
-/// The circle in which the sphere cuts the near plane ends at a tile edge.
+/// Returns a sphere whose circle in the near plane ends at a tile's edge.
 inline Light near_corner(const Aim& aim, Random& random) {
     const double n = aim.near_plane, r = aim.unit * random.power_of_two(-6, 12);
     const double w = r * random.uniform(-1, 1), h = std::sqrt((r - w) * (r + w));
@@ -191,7 +190,7 @@ inline Light near_corner(const Aim& aim, Random& random) {
     return nudged(aim.light(c[0], c[1], n - w, r), random);
 }
 
-/// The eye is on the surface, or a hair off it.
+/// Returns a sphere with the eye on its surface or just beside it.
 inline Light eye_surface(const Aim& aim, Random& random) {
     double v[3] = {random.normal(), random.normal(), random.normal()};
     const double length = std::hypot(v[0], v[1], v[2]), r = aim.unit * random.power_of_two(-3, 24);
@@ -199,7 +198,7 @@ inline Light eye_surface(const Aim& aim, Random& random) {
     return nudged(aim.light(d * v[0], d * v[1], d * v[2], r), random);
 }
 
-/// |x| or |y| equals the radius: one tangent plane holds the depth axis.
+/// Returns a sphere whose |x| or |y| is its radius, so that one tangent plane through the eye contains the view axis.
 inline Light axis_tangent(const Aim& aim, Random& random) {
     const double d = aim.depth(random),
                  r = aim.half_height(std::max(d, aim.unit)) * random.power_of_two(-8, 2);
@@ -210,7 +209,7 @@ inline Light axis_tangent(const Aim& aim, Random& random) {
     return nudged(aim.light(c[0], c[1], d, r), random);
 }
 
-/// z = r (1 + 2^-k): almost reaches the plane through the eye, so its projection almost reaches infinity.
+/// Returns a sphere at z = r (1 + 2^-k): it almost reaches the eye's plane, so its image is almost infinite.
 inline Light eye_plane(const Aim& aim, Random& random) {
     const double r = aim.unit * random.power_of_two(-2, 20), d = r * (1 + std::exp2(-random.integer(1, 30)));
     return nudged(
@@ -299,7 +298,7 @@ inline Light beyond_far(const Aim& aim, Random& random) {
                   random);
 }
 
-/// Any finite bits at all, denormals, the ends of the range, zeros of both signs, and bad input.
+/// Returns a light of any bits: denormals, the largest floats, zeros of both signs, and bad input.
 inline Light special(const Aim& aim, Random& random) {
     constexpr float inf = std::numeric_limits<float>::infinity(),
                     nan = std::numeric_limits<float>::quiet_NaN();
@@ -351,7 +350,7 @@ inline const std::vector<SphereSet>& sphere_sets() {
     return sets;
 }
 
-/// Makes the lights of a set, such as a SphereSet.
+/// Returns the lights that a set, such as a SphereSet, makes for a camera.
 template <class Set>
 auto make(const Set& set, const Camera& camera, std::size_t count, std::uint64_t seed) {
     const Aim aim(camera);
@@ -362,14 +361,14 @@ auto make(const Set& set, const Camera& camera, std::size_t count, std::uint64_t
     return lights;
 }
 
-/// In no list: bad input, or switched off.
+/// Returns whether no list may have the light: it is bad input or switched off.
 inline bool is_bad(const Light& light) {
     return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.w >= 0);
 }
 inline bool is_off(const Light& light) {
     return light.w == -1;
 }
-/// How many lights are to be counted as bad input.
+/// Returns how many of the lights must be counted as bad input.
 template <class Any> std::uint32_t rejected_of(const std::vector<Any>& lights) {
     std::uint32_t count = 0;
     for (const Any& light : lights)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spots: no miss, on every camera kind, with and without depth test, in view and world space. What is asked is
-// the spot itself, not the sphere that it is binned as.
+// No list lacks a spot that it should have: for every kind of camera, with and without depth test, in view and world
+// space. The spot itself is tested, not the sphere around it.
 #include "spots.hpp"
 #include "shape_proof.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace oracle {
 
-/// World-space spots that land, more or less, where a set wants them in view space.
+/// Returns world-space spots that a view matrix moves about where they are wanted in view space.
 static std::vector<SpotLight> into_world(std::vector<SpotLight> lights, const ViewMatrix& view) {
     for (SpotLight& s : lights) {
         const float size = s.ball.w / std::hypot(s.axis_x, s.axis_y, s.axis_z);

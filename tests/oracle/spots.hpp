@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sets of spots, as spheres.hpp has sets of spheres: aimed in double precision in the camera's own axes; the spot that is
-// asked about is the float one that comes out.
+// Random sets of spots, as spheres.hpp has sets of spheres. Positions are computed in double in the camera's axes;
+// tests then use the rounded float spot.
 #pragma once
 
 #include "spheres.hpp"
@@ -56,13 +56,13 @@ inline Triple plus(const Triple& a, const Triple& b, double k) {
 inline Triple any_direction(Random& random) {
     return glm::normalize(Triple{random.normal(), random.normal(), random.normal()});
 }
-/// Of length 1 and at right angles to a direction.
+/// Returns a random vector of length 1 at right angles to a direction.
 inline Triple across(const Triple& direction, Random& random) {
     const Triple any = any_direction(random);
     return glm::normalize(plus(any, direction, -glm::dot(any, direction)));
 }
 
-/// In radians: 0 to 180 degrees, often where formulas change or rounding hurts.
+/// Returns 0 to 180 degrees in radians, often where formulas change or rounding matters.
 inline double half_angle(Random& random) {
     const double degree = std::acos(-1.0) / 180;
     const double angles[] = {0,
@@ -75,7 +75,7 @@ inline double half_angle(Random& random) {
     return angles[std::min(random.integer(0, 11), 6)];
 }
 
-/// An axis as often along or across the view, or from or to the eye, as any.
+/// Returns an axis in any direction, often along or across the view, or towards or away from the eye.
 inline Triple axis(const Triple& apex, Random& random) {
     const double sign = random.sign();
     const Triple any = any_direction(random),
@@ -84,7 +84,7 @@ inline Triple axis(const Triple& apex, Random& random) {
     return axes[std::min(random.integer(0, 7), 4)];
 }
 
-/// Given to the library as floats, the axis often of another length than 1.
+/// Returns the spot in floats, as the library gets it; the axis is often not of length 1.
 inline SpotLight spot(const Aim& aim, Random& random, const Triple& apex, double radius, const Triple& axis,
                       double angle) {
     const double size = random.chance(0.7) ? 1 : random.power_of_two(-20, 20);
@@ -93,7 +93,7 @@ inline SpotLight spot(const Aim& aim, Random& random, const Triple& apex, double
             static_cast<float>(std::cos(angle))};
 }
 
-/// In the camera's axes, but for the sign of image axes that are flipped.
+/// Returns a light's centre in the camera's axes, but without the sign of mirrored image axes.
 inline Triple centre(const Aim& aim, const Light& light) {
     return {aim.coordinate(0, light), aim.coordinate(1, light), static_cast<double>(aim.depth_of(light))};
 }
@@ -104,7 +104,7 @@ inline Light any_sphere(const Aim& aim, Random& random) {
                                                                                                     random);
 }
 
-/// The spot's own ball is one of a set of spheres.
+/// Returns a spot whose whole sphere comes from `sphere`, a function of spheres.hpp.
 template <auto sphere> SpotLight in_ball(const Aim& aim, Random& random) {
     const Light ball = sphere(aim, random);
     const Triple apex = centre(aim, ball);
@@ -122,7 +122,7 @@ template <auto sphere> SpotLight in_least(const Aim& aim, Random& random) {
     return spot(aim, random, plus(c, a, narrow ? -r : -range * cosine), range, a, angle);
 }
 
-/// The apex at the eye, on the near plane, or a hair from them.
+/// Returns a spot with its apex at the eye, on the near plane, or just beside them.
 inline SpotLight at_eye(const Aim& aim, Random& random) {
     const double off = random.chance(0.3) ? 0 : aim.unit * random.power_of_two(-40, 0);
     const bool eye = random.chance(0.5);
@@ -136,7 +136,7 @@ inline SpotLight at_eye(const Aim& aim, Random& random) {
                 half_angle(random));
 }
 
-/// A point on a side, an edge or a corner of a tile's cell, a direction out of the cell there, and a size for a light.
+/// A point on a side, an edge or a corner of a tile's cell, a direction out of the cell there, and a light's size.
 struct OnCell {
     Triple at, outward;
     double size;
@@ -159,12 +159,12 @@ inline OnCell on_cell(const Aim& aim, Random& random) {
     return {{aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d}, glm::normalize(n), size};
 }
 
-/// Just touches a tile's cell, or misses that by 2^-k of its size: by the apex, the rim or the cap, as the direction
-/// has it. The direction is the cell's, at an angle of `turn` to the axis.
+/// Returns a spot that just touches a tile's cell, or misses it by 2^-k of its size, with its apex, its rim or its
+/// spherical end. The direction out of the cell makes an angle of `turn` with the axis.
 inline SpotLight touching(const Aim& aim, Random& random) {
     const auto [at, n, r] = on_cell(aim, random);
     const double angle = half_angle(random), cosine = std::cos(angle), sine = std::sin(angle);
-    // Any, or that of the tangent plane of the least sphere, too, at the rim or at the apex.
+    // Any angle, or one where the tangent plane at the rim or the apex is also that of the least sphere.
     double turn = std::acos(random.uniform(-1, 1));
     if (random.chance(0.6)) turn = random.chance(0.7) ? std::min(2 * angle, std::acos(0.0)) : std::acos(-1.0);
     const Triple m = across(n, random);
@@ -182,7 +182,7 @@ inline SpotLight touching(const Aim& aim, Random& random) {
     return light;
 }
 
-/// The eye on the side of the cone, or of the one that it has behind its apex, or a hair off it.
+/// Returns a spot with the eye on, or just beside, the side of its cone or of the cone's mirror image behind the apex.
 inline SpotLight eye_on_cone(const Aim& aim, Random& random) {
     const Light ball = random.chance(0.5) ? spheres::field(aim, random) : any_sphere(aim, random);
     const Triple apex = centre(aim, ball);
@@ -194,7 +194,7 @@ inline SpotLight eye_on_cone(const Aim& aim, Random& random) {
     return spot(aim, random, apex, static_cast<double>(ball.w) * random.power_of_two(0, 6), axis, angle);
 }
 
-/// The side of the cone, or now and then its axis, in the plane of a tile's edge, or a hair off it.
+/// Returns a spot with the side of its cone, or sometimes its axis, in or beside the plane of a tile's edge.
 inline SpotLight along_edge(const Aim& aim, Random& random) {
     const double d = aim.depth(random), h = aim.half_height(std::max(d, aim.unit));
     const int i = random.integer(0, 1);
@@ -214,7 +214,7 @@ inline SpotLight along_edge(const Aim& aim, Random& random) {
     return spot(aim, random, plus({at[0], at[1], d}, n, off), r, axis, angle);
 }
 
-/// Ranges out of all proportion to what is seen.
+/// Returns a spot whose range is far larger than what is seen.
 inline SpotLight huge(const Aim& aim, Random& random) {
     const Triple apex = plus({}, any_direction(random), aim.unit * random.power_of_two(-4, 12));
     return spot(aim, random, apex, aim.unit * random.power_of_two(12, 30), axis(apex, random),

@@ -28,10 +28,10 @@ constexpr Affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0
 struct ViewMatrix {
     std::string name;
     Affine m;
-    double stretch;  ///< of a rotation times a scale, that scale; 0 for other maps
+    double stretch;  ///< for a rotation times a scale: that scale; 0 for other maps
 };
 
-/// A rotation about a random axis, columns scaled, then one column leaned towards another; and a move.
+/// Returns a random rotation, with scaled columns, one of which may be leaned towards another, and a translation.
 inline ViewMatrix random_view(const std::string& name, Random& random, double distance, glm::dvec3 scale,
                               double lean) {
     const auto normals = [&] { return glm::dvec3(random.normal(), random.normal(), random.normal()); };
@@ -61,8 +61,8 @@ inline std::vector<ViewMatrix> view_matrices(Random& random) {
             random_view("nearly flat", random, 10, {1, 1e-3, 1}, 0)};
 }
 
-/// World-space lights that land, more or less, where a set wants them in view space. Solved in double; the
-/// truth that is asked for is the image of what comes out.
+/// Returns world-space lights that a view matrix moves about where they are wanted in view space. Solved in double;
+/// tests use the rounded result.
 inline std::vector<Light> into_world(const std::vector<Light>& lights, const ViewMatrix& view) {
     glm::dmat4 m;
     for (int c = 0; c < 4; ++c)
@@ -93,8 +93,8 @@ struct ExactView {
     }
 };
 
-/// A ball around the image of a light's under a view matrix, for the filter: in most cases that is apart from the cell,
-/// too.
+/// A sphere around the ellipsoid that a light becomes in view space, for tests in double: mostly it does not meet the
+/// cell, either.
 class AroundImage {
 public:
     AroundImage(const Oracle& oracle, const Affine& m) : oracle_(oracle), view_(m) {
@@ -110,7 +110,7 @@ public:
         stretch_ = std::sqrt(nearly(most)) * (1 + 0x1p-30);
     }
 
-    /// Cut to double, the centre moves by less than 2^-51 of its coordinates.
+    /// Rounding to double moves the centre by less than 2^-51 of its coordinates.
     FlatBall operator()(const Light& light) const {
         const CameraBall seen = oracle_.in_camera({view_(exact_ball(light.x, light.y, light.z, 0).centre), 0});
         const double x = nearly(seen.x), y = nearly(seen.y), depth = nearly(seen.depth);

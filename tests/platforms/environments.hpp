@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Floating-point environments that a caller may have set: as far as a platform has them.
+// Floating-point settings of the processor that a user's program may have changed, as far as a platform has them.
 #pragma once
 
 #include <cfenv>
@@ -11,7 +11,7 @@ struct Setting {
     const char* name;
     Rounding rounding = Rounding::to_nearest;
     bool traps = false;    ///< invalid operations and divisions by zero end the program
-    bool flushes = false;  ///< denormal numbers are 0, those that are read and those that come out
+    bool flushes = false;  ///< denormal numbers are 0, both as operands and as results
 };
 
 inline constexpr Setting settings[] = {{"rounding upward", Rounding::upward},
@@ -29,7 +29,7 @@ public:
 #endif
         set_rounding(setting.rounding);
 #if defined(__x86_64__) || defined(__i386__)
-        // Masks of invalid operations and of divisions by zero; flushing what comes out, and what is read.
+        // The bits of the two traps in MXCSR, and those that flush denormal results and operands.
         const unsigned of_default = __builtin_ia32_stmxcsr();
         __builtin_ia32_ldmxcsr((setting.traps ? of_default & ~0x280u : of_default) |
                                (setting.flushes ? 0x8040u : 0));

@@ -41,7 +41,7 @@ using namespace lightbin;
 class Random : public SplitMix {
 public:
     using SplitMix::SplitMix;
-    /// Of 20 bits behind the point; both ends in units of 2^-10.
+    /// Returns a number with 20 bits behind the point; both limits are in units of 2^-10.
     float between(int low, int high) {
         return static_cast<float>(integer(low * 1024, high * 1024)) * 0x1p-20f;
     }
@@ -55,7 +55,7 @@ public:
     float sign(int n) { return one_in(n) ? -1.0f : 1.0f; }  ///< -1 in one of n
 };
 
-/// Of numbers, so that the order of their bytes is no matter.
+/// A hash of numbers rather than of bytes, so that the order of bytes in memory is no matter.
 class Hash {
 public:
     void add(std::uint64_t number) {
@@ -74,7 +74,7 @@ private:
     std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-/// In a form of its own, so that it is read by a callable.
+/// A light in the program's own form, so that the library reads it through a callable.
 struct Lamp {
     double reach;
     Spot spot;
@@ -121,7 +121,7 @@ View any_view(Random& random) {
          .reversed_z = reversed});
 }
 
-/// What no sane caller has, in one of a hundred numbers.
+/// Returns the number, or once in a hundred times one that no sensible program passes.
 float or_special(float number, Random& random) {
     constexpr float values[] = {0,
                                 -1,
@@ -195,7 +195,7 @@ const Slices& slices() {
     return all;
 }
 
-/// The environment of the caller and of its threads.
+/// The floating-point settings of the calling thread and its worker threads.
 const Setting* environment = nullptr;
 
 template <class Call> auto in_environment(const Call& call) {
@@ -204,7 +204,7 @@ template <class Call> auto in_environment(const Call& call) {
     return call();
 }
 
-/// What a Parallel may be given: threads at their least helpful, one of which does all, from the end on.
+/// The worst loop that a Parallel may be given: one thread does everything, from the end.
 const auto backwards = [](std::size_t n, auto body) {
     in_environment([&] {
         while (n > 0)
@@ -224,7 +224,7 @@ template <class Id> void add_grid(Hash& hash, const LightGrid<Id>& grid) {
         hash.add(bin.least | std::uint64_t{bin.greatest} << 32);
 }
 
-/// The elements that encode() writes, of a width.
+/// Adds the elements of this width that encode() writes to the hash.
 template <class Element>
 void add_encoded(Hash& hash, const LightGrid<std::uint32_t>& grid, const ListFormat& format) {
     std::vector<std::byte> bytes(
@@ -238,7 +238,7 @@ void add_encoded(Hash& hash, const LightGrid<std::uint32_t>& grid, const ListFor
     }
 }
 
-/// Of the sentinel's lists the rest is left as it is: 0.
+/// Adds all encodings of a grid. Lists with an end mark leave the rest of their buffer as it was: 0.
 void add_encodings(Hash& hash, const LightGrid<std::uint32_t>& grid) {
     add_encoded<std::uint8_t>(hash, grid,
                               {.encoding = ListEncoding::sentinel, .ids = IdWidth::u8, .capacity = 9});
@@ -255,7 +255,7 @@ public:
     std::uint64_t hash(const Scene& scene, std::size_t number, const Parallel& parallel) {
         const auto to_sphere = [](const Lamp& lamp) { return bounding_sphere(lamp.spot); };
         const auto to_spot = [](const Lamp& lamp) { return lamp.spot; };
-        // Products alone, as a compiler may fuse them with sums.
+        // Products only: a compiler might fuse a product and a sum, on some platforms.
         const auto to_box = [](const Lamp& lamp) {
             const Spot& s = lamp.spot;
             const float r = s.radius, x = s.axis_x * r, y = s.axis_y * r, z = s.axis_z * r;
@@ -302,8 +302,8 @@ private:
         return hash.value();
     }
 
-    /// What the lights cover, and a budget by their sizes in pixels, among which are infinite ones; of lights out of
-    /// view NaN.
+    /// Adds what lights cover in the image, and a budget that prefers large lights: infinite sizes occur, and NaN for
+    /// lights out of view.
     template <class Id>
     void add_coverage(Hash& hash, const LightGrid<Id>& grid, const std::vector<LightCoverage>& covered) {
         std::vector<float> weights(grid.light_counts().lights, std::numeric_limits<float>::quiet_NaN());
@@ -408,7 +408,7 @@ void check_depth(const std::vector<Scene>& scenes) {
     print("Z bounds", hash);
 }
 
-/// What the C library's functions are in, which is rounded to so few digits that it is the same all the same.
+/// Checks texts that need functions of the C library, rounded to so few digits that they are the same everywhere.
 void check_texts() {
     Hash hash;
     const Slices exponential = in_environment([] { return *Slices::exponential(24, 5, 200); }),
@@ -443,7 +443,7 @@ void check_lists(const std::vector<Scene>& scenes) {
     check<Options{.depth_test = true, .slicing = Slicing::z_bins}>("depth test, z_bins", scenes);
 }
 
-/// Of what is made of the same scenes in an environment, and the views and slices as well.
+/// Returns the hash of the same scenes, views and slices under other floating-point settings.
 std::uint64_t hash_in(const Setting* setting, std::vector<Scene> scenes) {
     environment = setting;
     all = {};
@@ -467,7 +467,7 @@ void check_environments(const std::vector<Scene>& scenes) {
     }
 }
 
-/// What a Binner of its own makes of the scenes, one after another.
+/// Returns the hash of what one Binner makes of the scenes, one after another.
 template <Options options> std::uint64_t hash_of(const std::vector<Scene>& scenes, const Parallel& parallel) {
     Builder<options> builder(compiled_isa);
     Hash hash;

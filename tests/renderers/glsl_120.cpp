@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shaders of docs/glsl_120.md, as they stand there, draw what every light in every fragment draws:
+// Tests that the shaders on the page docs/glsl_120.md draw the picture of every light in every fragment:
 //   glsl_120 PAGE.md
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -30,7 +30,7 @@ constexpr int width = 320, height = 200, light_count = 300;
     std::exit(1);
 }
 
-/// The page's blocks that are whole files, in order: vertex, fragment, look-up.
+/// Returns the page's code blocks that are whole files, in order: vertex shader, fragment shader, look-up.
 std::vector<std::string> files_in(const char* page) {
     std::ifstream file(page);
     const std::string text(std::istreambuf_iterator<char>(file), {}), begin = "```glsl\n";
@@ -43,7 +43,7 @@ std::vector<std::string> files_in(const char* page) {
     return files;
 }
 
-/// `text` with `other` in place of its first line, which is its version.
+/// Returns `text` with its first line, the #version, replaced by `other`.
 std::string with_first_line(const std::string& text, const std::string& other) {
     return other + text.substr(text.find('\n') + 1);
 }
@@ -120,7 +120,7 @@ std::vector<std::uint8_t> draw(const FrameBuffer& target, GLuint program,
 }  // namespace
 
 int main(int, char** words) {
-    // As a program gets it that asks for nothing: the compatibility profile.
+    // The context that a program gets by default: the compatibility profile.
     const EGLDisplay display =
         eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (!eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) fail("no usable OpenGL");
@@ -135,7 +135,7 @@ int main(int, char** words) {
     const std::string &vertex = files[0], &engine = files[1],
                       look_up = with_first_line(files[2], "#version 330 compatibility\n" + snippet->text);
     const GLuint three_files = link(vertex, {engine, look_up});
-    // The look-up's own lines stand before the engine's, whose version is now 3.30.
+    // The look-up's lines stand before the engine's text, whose version line moves up and becomes 3.30.
     const GLuint two_files = link(vertex, {look_up + with_first_line(engine, "")});
     const auto every = [&](int count) {
         const std::string loop =

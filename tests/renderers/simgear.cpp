@@ -25,8 +25,8 @@ struct Spot {
 constexpr int tile_size = 64, slices = 24, columns = 10, rows = 8;
 constexpr float near = 0.5f, far = 10000;
 
-/// Returns how many of the points and spots that end at depths around the boundaries of slices are not in the list that
-/// is read there.
+/// Counts the points and spots that end at a depth near a boundary of slices and are not in the list read at that
+/// depth.
 int count_lost(float margin, int* lights) {
     const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
     camera->setViewport(0, 0, columns * tile_size, rows * tile_size - 7);

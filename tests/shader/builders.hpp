@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every form of the shader of lightbin/shader_reduce.hpp, and runs of them: what the CPU makes is expected. And what
+// Every form of the shader of lightbin/shader_reduce.hpp, and runs whose results are compared with the CPU's. Also what
 // tests of shaders that write buffers have in common.
 #pragma once
 
@@ -44,7 +44,7 @@ inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLang
     return every;
 }
 
-// Cameras: 0 perspective, 1 reversed and infinite, 2 orthographic.
+// Number of cameras: 0 is a perspective, 1 has reversed Z and an infinite far plane, 2 is orthographic.
 constexpr int camera_count = 3;
 
 inline lightbin::View builder_view(int camera, int width, int height, int tile_size, bool flip_y) {
@@ -72,7 +72,7 @@ private:
     std::mt19937 engine_;
 };
 
-/// The bytes of what a shader binds, by the names in its text.
+/// The bytes of the buffers and textures that a shader binds, by their names in its text.
 class BuilderData {
 public:
     template <class Elements> void put(const char* name, const Elements& elements) {
@@ -80,7 +80,7 @@ public:
         data_[name].assign(bytes.begin(), bytes.end());
     }
 
-    /// Binds a struct of constants by two names: as one uniform block, and as the vectors `names` that it consists of.
+    /// Binds a struct of constants in both forms: as one uniform block, and as the uniform vectors `names`.
     void put_constants(std::span<const std::byte> bytes, std::span<const char* const> names) {
         data_["grid_block"].assign(bytes.begin(), bytes.end());
         for (std::size_t i = 0; i < names.size(); ++i)
@@ -88,7 +88,7 @@ public:
                                    bytes.begin() + static_cast<std::ptrdiff_t>(16 * i + 16));
     }
 
-    /// What is beyond the data of its name, with `_block` or without, is 0xee.
+    /// Returns the bytes of a binding, found by its name without `_block`. Bytes beyond the given ones are 0xee.
     Input input(const lightbin::ShaderBinding& binding, std::string_view prefix) const {
         std::string name = binding.name.substr(prefix.size());
         if (data_.count(name) == 0) name.resize(name.find("_block"));
@@ -134,8 +134,8 @@ struct BuiltScene {
     lightbin::Slices slices;
 };
 
-/// A reduction of a random depth buffer. The result must hold what reduce_depth() allows for, and exceed it
-/// by no more than a few times the float's and the format's step.
+/// Returns a job that reduces a random depth buffer. Its result must hold all depths that reduce_depth() allows for,
+/// and be no wider than that by more than a few steps of floats and of the format.
 inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, int height,
                       int tile_size) {
     using namespace lightbin;
@@ -146,7 +146,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     const int full_width = width + corner_x, full_height = height + corner_y;
     const auto samples = static_cast<std::size_t>(options.samples);
 
-    // Rows as the texture counts them, and as the view does.
+    // The number of rows in the texture and in the view.
     BuilderNumbers number(static_cast<unsigned>(width + camera));
     std::vector<float> texels(static_cast<std::size_t>(full_width) * static_cast<std::size_t>(full_height) *
                                   samples,
@@ -199,7 +199,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     job.width = job.groups[0];
     job.height = job.groups[1];
 
-    // The depths of the tile's samples, moved outward by a few steps of the format and of floats.
+    // The depths of the tile's samples, moved outward by a few steps of the depth format and of floats.
     const double step = options.format == DepthFormat::unorm16 ? 0x1p-15 : 0x1p-22;
     std::vector<double> lower(min.size(), 1), upper(min.size(), 0);
     for (int y = 0; y < height; ++y)
@@ -230,7 +230,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     return job;
 }
 
-/// What a language runs. Multisample textures have 4 samples, or are left out.
+/// Returns all reduce jobs of a language; multisample textures have 4 samples and are optional.
 inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool multisample) {
     using namespace lightbin;
     std::vector<Job> jobs;

@@ -23,7 +23,7 @@ namespace {
 
 using lightbin::ShaderLanguage;
 
-/// Whether glslang takes a GLSL text for OpenGL or OpenGL ES.
+/// Returns whether glslang accepts a GLSL text for OpenGL or OpenGL ES.
 bool compiles(const std::string& text, EShLanguage stage, std::string& error) {
     glslang::TShader shader(stage);
     const char* begin = text.c_str();
@@ -77,7 +77,7 @@ private:
     std::string error_;
 };
 
-/// The text in the newest version that the language stands for.
+/// Returns the text with the newest #version of its language.
 std::string newest(std::string text, ShaderLanguage language) {
     const std::string line = version_line(language);
     const char* newer = language == ShaderLanguage::glsl_430   ? "#version 460 core\n"
@@ -94,7 +94,7 @@ bool in_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
 
-/// The names of a text that begin with a prefix, without it.
+/// Collects the names in a text that begin with the prefix, without the prefix.
 void take_names(std::set<std::string>& names, const std::string& text) {
     for (const std::string prefix : {"my_", "lightbin_"})
         for (std::size_t at = text.find(prefix); at != text.npos; at = text.find(prefix, at)) {
@@ -106,19 +106,19 @@ void take_names(std::set<std::string>& names, const std::string& text) {
         }
 }
 
-/// Compiles all texts of a language but WGSL, of which there is no compiler here, and adds the names in them.
+/// Compiles all texts of a language and collects their names. WGSL is skipped: there is no compiler for it here.
 void compile_language(Compiler& compiler, ShaderLanguage language, std::set<std::string>& names) {
     unsigned turn = 0;
     each_text(language, {}, [&](const Job& job) {
         take_names(names, job.text);
-        // glslang takes HLSL's SV_ViewID for any input, and knows of no multiview there.
+        // glslang accepts any input as HLSL's SV_ViewID and does not know multiview in HLSL.
         if (language == ShaderLanguage::wgsl || (job.hlsl && job.views > 1)) return;
         compiler.compile(language, stage_of(job), ++turn & 1 ? job.text : newest(job.text, language));
     });
 }
 
-/// Returns what is wrong with the rule for prefixes in a language, or nothing. `names` are those of its texts, whose
-/// prefixes are as `prefixes` has them.
+/// Returns what is wrong with the rule for name prefixes in a language, or nothing. `names` are the names in its texts
+/// without the prefix.
 std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
                                 const std::set<std::string>& names, const std::vector<std::string>& words) {
     lightbin::SnippetOptions options = with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
@@ -126,7 +126,7 @@ std::string problem_of_prefixes(Compiler& compiler, ShaderLanguage language,
     options.prefix = longest;
     if (language != ShaderLanguage::wgsl)
         compiler.compile(language, EShLangFragment, reader_text_job(options, Stage::fragment).text);
-    // A text that shader_snippet() refuses would not compile, here in OpenGL ES.
+    // Where shader_snippet() refuses a prefix, the text with it must not compile; tested in OpenGL ES.
     options = with_switches(every_list(ShaderLanguage::essl_300, lightbin::Slicing::clusters)[0], 8);
     options.prefix = "zzq_";
     const std::string text = reader_text_job(options, Stage::fragment).text;

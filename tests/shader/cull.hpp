@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light grids that the passes of lightbin/shader_cull.hpp make on a device, held against a Binner's.
+// Runs the passes of lightbin/shader_cull.hpp on a device and compares their light grids with a Binner's.
 #pragma once
 
 #include "builders.hpp"
@@ -22,7 +22,7 @@ struct CullText {
     lightbin::ShaderText shader() const { return *lightbin::cull_shader(pass, options); }
 };
 
-/// Every text of the passes that a language has.
+/// Returns every text of the passes in a language.
 inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<CullText> every;
@@ -41,7 +41,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
                     options.count_in_buffer = switches & 8;
                     options.max_only = switches & 16;
                     options.ids = switches & 32 ? IdWidth::u16 : IdWidth::u32;
-                    // The lights matter to the first pass alone, and ids to the last.
+                    // Options of lights change the first pass only, and the format of ids the last.
                     const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
                                       (!depth_test && (switches & 16) != 0);
@@ -51,7 +51,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     return every;
 }
 
-/// What a grid is made of. `lights` are the words of the caller's buffer.
+/// The scene and options of a grid. `lights` are the words of the user's buffer.
 struct CullCase {
     std::string name;
     lightbin::View view;
@@ -65,7 +65,7 @@ struct CullCase {
     bool binners_margin = false;  // the margins of the image axes are the Binner's
 };
 
-/// What the passes left. Words of buffers that they did not write are 0xeeeeeeee.
+/// The buffers that the passes wrote. Words that they did not write are 0xeeeeeeee.
 struct CulledGrid {
     lightbin::CullTotals totals = {};
     std::vector<lightbin::ListRange> tiles;
@@ -77,7 +77,7 @@ struct CulledGrid {
     std::uint32_t id(std::size_t at) const {
         return narrow ? lists[at / 2] >> (at % 2 * 16) & 0xffff : lists[at];
     }
-    /// Of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
+    /// Returns a hash of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
     std::uint64_t hash() const {
         std::uint64_t hash = 0xcbf29ce484222325;
         const auto add = [&hash](auto span) {
@@ -92,7 +92,7 @@ struct CulledGrid {
     }
 };
 
-/// With the number of lights in a buffer, there is room for more than are given.
+/// Returns the capacities of a scene; if the number of lights is read from a buffer, they exceed it.
 inline lightbin::CullCapacity room_of(const CullCase& scene) {
     return {scene.count + (scene.options.count_in_buffer ? 40 : 0), scene.room};
 }
@@ -108,10 +108,10 @@ inline lightbin::CullPlan plan_of(const CullCase& scene) {
     return plan;
 }
 
-/// The words of the buffers that passes write, by name.
+/// The words of the buffers that the passes write, by the buffer's name.
 using CullBuffers = std::map<std::string, std::vector<std::uint32_t>>;
 
-/// A few words more than asked for show writes beyond the end.
+/// Makes buffers with a few more words than the plan asks for, to notice writes beyond the end.
 inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
     CullBuffers written;
     const auto blank = [&](const char* name, std::uint64_t bytes) {
@@ -124,7 +124,7 @@ inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
     return written;
 }
 
-/// Runs passes on a device, one job for each buffer that a pass writes.
+/// Runs passes on a device as one job for each buffer that a pass writes, as a job returns one buffer.
 template <class Device>
 void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan& plan,
                 std::span<const lightbin::CullPass> passes, CullBuffers& written) {
@@ -154,8 +154,8 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     }
 }
 
-/// Runs all passes on a device: those of lists, and then that of masks, which finds none of what `offsets` wrote. Behind
-/// the last light it finds what would be lights in all tiles.
+/// Runs all passes on a device: those for lists, then the one for masks, without the results of the pass `offsets`.
+/// Behind the last light the buffer holds lights that would be in all tiles.
 template <class Device> CulledGrid run_cull(Device& device, const CullCase& scene) {
     using namespace lightbin;
     const CullPlan plan = plan_of(scene);
@@ -199,8 +199,8 @@ struct CullTally {
     }
 };
 
-/// Counts what a complete grid lacks of the expected lists, which hold lights by ascending id, what it has beyond them,
-/// and what is wrong in itself: ids that do not ascend, ranges that do not follow each other, a total that differs.
+/// Counts what a grid lacks of the expected lists, which are sorted by id, what it has beyond them, and faults of its
+/// own: ids that do not ascend, ranges that do not follow each other, a wrong total.
 inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expected) {
     CullTally tally;
     tally.cases = 1;
@@ -231,8 +231,8 @@ inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expecte
     return tally;
 }
 
-/// Counts what masks lack of a MaskBinner's, and what they have beyond them: bits of columns and rows. Wrong are bits and
-/// ids of lights that are not there, another layout than LightMasks has, and other totals than the lists'.
+/// Counts bits of columns and rows that masks lack of a MaskBinner's, and bits beyond them. Faults are bits and ids of
+/// lights that do not exist, a layout unlike LightMasks, and totals unlike those of the lists.
 template <class Lights>
 CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lights& lights) {
     lightbin::MaskBinner binner;
@@ -276,8 +276,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     return tally;
 }
 
-/// Reads masks by the snippet in every pixel of a view, on the device that made them, and returns whether each pixel has
-/// the lights whose bits its column and its row have, in ascending order.
+/// Reads masks by the shader snippet in every pixel, on the device that made them. Returns whether each pixel gets the
+/// lights with bits in its column and its row, in ascending order.
 template <class Device> bool read_masks(Device& device, const CullCase& scene, const CulledGrid& grid) {
     using namespace lightbin;
     const SnippetOptions options = {.language = scene.options.language, .masks = true, .prefix = scene.options.prefix};
@@ -315,7 +315,7 @@ template <class Device> bool read_masks(Device& device, const CullCase& scene, c
     return job.accepts(device.run(job));
 }
 
-/// The words of an array of lights, each of `stride` words, with the light at word `first`.
+/// Returns lights as words: each takes `stride` words and begins at word `first` of them.
 template <class Light>
 std::vector<std::uint32_t> words_of(const std::vector<Light>& lights, std::size_t stride = sizeof(Light) / 4,
                                     std::size_t first = 0) {
@@ -326,9 +326,8 @@ std::vector<std::uint32_t> words_of(const std::vector<Light>& lights, std::size_
     return words;
 }
 
-/// Lights in view of ordinary sizes (0), small ones on a shell around a point (1), and hard ones (2): the eye
-/// inside them and on their surface, the near plane at depth 0.1 through them and touched by them, tiny, huge and
-/// bad ones.
+/// Returns ordinary lights in view (kind 0), small ones on a shell around a point (1), or difficult ones (2): around
+/// the eye and touching it, through the near plane at depth 0.1 and touching it, tiny, huge and bad ones.
 inline std::vector<lightbin::Sphere> cull_lights(int kind, std::size_t count, unsigned seed) {
     BuilderNumbers number(seed);
     const auto pick = [&](int choices) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cases in which light grids that are made on a device are held against a Binner's.
+// The cases in which light grids made on a device are compared with a Binner's.
 #pragma once
 
 #include "cull.hpp"
@@ -19,7 +19,7 @@ BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::Light
     return {{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}};
 }
 
-/// A way to make a grid, whose options are both the Binner's and the shaders'.
+/// Options of a grid, for both the Binner and the shaders.
 struct CullWay {
     bool depth_test = false;
     lightbin::Slicing slicing = lightbin::Slicing::none;
@@ -88,8 +88,8 @@ private:
         return made;
     }
 
-    /// Runs all passes; for every fourth case twice, which must leave the same bytes. Prints their hash, so that runs of
-    /// the same case can be compared: on other devices and by more threads.
+    /// Runs all passes, in every fourth case twice, which must give the same bytes. Prints their hash, to compare runs
+    /// on other devices or with more threads.
     template <class Device> CulledGrid make(Device& device, const CullCase& scene) {
         const CulledGrid grid = run_cull(device, scene);
         if (turn_ % 4 == 0 && run_cull(device, scene).hash() != grid.hash()) {
@@ -101,13 +101,13 @@ private:
         return grid;
     }
 
-    /// Adds to the total, and says what is not as it should be.
+    /// Adds the counts of a case to the total, and prints its name and faults if it has any.
     void add(const std::string& name, const CullTally& tally) {
         if (tally.missed + tally.wrong > 0) tally.print(name.c_str());
         total_.add(tally);
     }
 
-    /// Numbers of lights about the sizes of words, groups and steps, and of pixels from one to the most.
+    /// Tests numbers of lights near the sizes of words and work groups, and pictures from one pixel to the largest.
     template <class Device> void smallest_and_largest(Device& device) {
         using namespace lightbin;
         struct Size {
@@ -136,8 +136,8 @@ private:
         }
     }
 
-    /// Rooms for fewer entries than there are: a prefix is written, nothing beyond, and the need is counted. Two runs
-    /// leave the same bytes.
+    /// Tests buffers that are too small for all entries: the first entries are written, nothing beyond the end, and the
+    /// need is counted. Two runs give the same bytes.
     template <class Device> void short_of_room(Device& device) {
         using namespace lightbin;
         CullTally tally;
@@ -170,8 +170,8 @@ private:
         add("rooms", tally);
     }
 
-    /// Counts of cells whose sum is just below 2^32 - 1, is that, and exceeds it: the total stays at the greatest number,
-    /// and so do the offsets behind it. Nobody has that many lights; the counts are put where the pass count would.
+    /// Tests cells whose counts add up to just below 2^32 - 1, to that, and to more: the total stays at the greatest
+    /// number, and so do later offsets. The counts are written where the pass `count` would put them.
     template <class Device> void beyond_32_bits(Device& device) {
         using namespace lightbin;
         if (!mine()) return;
@@ -182,7 +182,7 @@ private:
         const CullCase scene = simple(view, lights, room);
         const CullPlan plan = plan_of(scene);
         CullTally tally;
-        // The two great counts are next to each other, or beyond what one group adds up.
+        // The two large counts are next to each other, or farther apart than one work group adds up.
         for (const std::uint32_t other : {11u, 200u})
             for (const std::uint64_t total : {0xfffffffeull, 0xffffffffull, 0x100000000ull, 0x180000000ull}) {
                 std::vector<std::uint32_t> counts(cells, all);
@@ -214,7 +214,7 @@ private:
         add("counts beyond 32 bits", tally);
     }
 
-    /// With the Binner's own margin, and arithmetic that rounds as its does, the bytes are the Binner's.
+    /// With the Binner's margin, and arithmetic that rounds like the CPU's, the GPU's bytes must equal the Binner's.
     template <class Device> void as_the_binner(Device& device) {
         using namespace lightbin;
         if (!mine()) return;
@@ -234,8 +234,8 @@ private:
         }
     }
 
-    /// What ordinary lights have beyond the Binner's lists: spheres at most 1 in 1,000, spots 1 in 20, and wide spots 1 in 10
-    /// where boxes around cells are tested.
+    /// Limits how many entries ordinary lights have beyond the Binner's: 1 in 1,000 of spheres, 1 in 20 of spots, and 1
+    /// in 10 of wide spots where boxes around cells are tested.
     template <class Device> void ordinary(Device& device) {
         using namespace lightbin;
         if (!mine()) return;
@@ -275,8 +275,8 @@ private:
         }
     }
 
-    /// One grid. Lights of world space are those of view space, moved by the inverse of a view matrix; the Binner gets
-    /// the same ones.
+    /// Makes and compares one grid. World-space lights are the view-space ones moved by the inverse of a view matrix;
+    /// the Binner gets the same lights.
     template <CullWay way, class Light, class Device>
     void one(Device& device, const std::vector<Light>& lights, int camera, int tile_size) {
         using namespace lightbin;

@@ -37,7 +37,7 @@ double uniform() {
     return static_cast<double>(random_state >> 11) / 9007199254740992.0;
 }
 
-/// Where between the ends of its error an operation's result lies, -1 to 1.
+/// Returns where between the limits of its error (-1 to 1) an operation's result lies.
 double place() {
     return rounding == Rounding::up       ? 1
            : rounding == Rounding::down   ? -1
@@ -151,8 +151,8 @@ class LightMaker {
 public:
     LightMaker(unsigned seed, const View& view) : engine_(seed), camera_(detail::camera_of(view)) {}
 
-    /// A light in view space: usual ones, the eye inside and on the surface, the near plane through it and touching it,
-    /// extreme radii, and ones that end next to a tile's edge.
+    /// Returns a light in view space: ordinary, around the eye or touching it, through the near plane or touching it,
+    /// with an extreme radius, or ending near a tile's edge.
     Sphere next() {
         double z = std::pow(10.0, real(-1, 2.3)), y = z * real(-0.7, 0.7), x = z * real(-1.2, 1.2),
                r = z * std::pow(2.0, real(-14, 1));
@@ -195,12 +195,12 @@ private:
     const detail::Camera& camera_;
 };
 
-/// Of rectangles: how many there are, and how many do not hold the Binner's.
+/// Counts rectangles, and those that do not contain the Binner's rectangle.
 struct Tally {
     std::uint64_t rectangles = 0, lost = 0;
 };
 
-/// Projects lights by the text, under each arithmetic, and compares with the Binner's rectangles.
+/// Projects lights by the shader's text under each arithmetic, and compares the rectangles with the Binner's.
 template <class Light>
 void compare(const View& view, const CullOptions& options, const std::vector<Light>& made,
              const Matrix* to_view, double margin, Tally& tally) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the functions of the pass project, as GLSL has them, for cull_twin.cpp to include as C++: of spheres in view
-// space, in world space, of an orthographic view, and of spots, a namespace each.
+// Writes the functions of the GLSL pass `project` for cull_twin.cpp to include as C++, a namespace for each variant:
+// spheres in view space, in world space, of an orthographic view, and spots.
 #include <lightbin/shader_cull.hpp>
 
 #include <cstdio>

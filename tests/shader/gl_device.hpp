@@ -28,7 +28,7 @@ public:
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     }
 
-    /// The program of a job, to be deleted by the caller.
+    /// Compiles and links the program of a job. The caller deletes it.
     GLuint program(const Job& job) const {
         const std::string version = "#version " + std::to_string(glsl_) + (glsl_ < 330 ? " es\n" : " core\n");
         return job.stage == Stage::compute ? link_compute_program(job.text)
@@ -148,7 +148,7 @@ void main() {
 }
 )";
 
-    /// A uniform's type is told by its name. What is not read is left out of the program, and has no place.
+    /// Sets a uniform, whose type its name tells. A uniform that the program does not read has no location.
     static void set_uniform(GLint place, const std::string& name, const std::vector<std::byte>& data) {
         if (name.ends_with("corner"))
             glUniform2iv(place, 1, reinterpret_cast<const GLint*>(data.data()));

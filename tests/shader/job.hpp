@@ -51,7 +51,7 @@ struct Job {
     }
 };
 
-/// Which share of the work: every count-th job from `first` on. On the command line: its last two numbers.
+/// A share of the work: every count-th job from `first` on, given by the last two numbers of the command line.
 struct Share {
     std::size_t first = 0, count = 1;
 };
@@ -60,8 +60,8 @@ inline Share share_of(int count, char** arguments) {
     return count < 3 ? Share{} : Share{std::stoul(arguments[count - 2]), std::stoul(arguments[count - 1])};
 }
 
-/// Prefixes of names, which texts have in turns: usual ones, and some that are nearly a reserved word with a name, or nearly
-/// reserved themselves.
+/// Prefixes of names that texts use in turn: ordinary ones, and some that are almost reserved words or make one with a
+/// name.
 inline constexpr std::string_view prefixes[] = {"lightbin_", "my_", "vol", "volat", "Vola", "vola_",
                                                 "ext",       "gl",  "GL",  "Gl_",   "x9",   "a_"};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A shader around the snippet that tells what every pixel reads, and what it is of. All but the loops, the result and the
-// entry point is written once, in the GLSL that detail/shaders/writer.hpp describes, and translated to each language.
+// A test shader around the snippet, which writes what each pixel reads from the lists. It is written once, in the GLSL
+// that detail/shaders/writer.hpp describes, and translated to each language; only loops, result and entry point are
+// written for each.
 #pragma once
 
 #include "job.hpp"
@@ -21,7 +22,7 @@ inline lightbin::Slices reader_slices() {
     return *lightbin::Slices::from_boundaries(boundaries);
 }
 
-/// The depths that pixels have in turns: the boundaries, the floats beside them, and others.
+/// Returns the depths that pixels have in turn: the slices' boundaries, the floats beside them, and others.
 inline std::vector<float> reader_depths() {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     std::vector<float> depths = {-0.0f, 1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, infinity, -infinity};
@@ -39,11 +40,11 @@ constexpr int corner_x = 3, corner_y = 5;
 
 constexpr int result_binding = 2;  // compute
 
-/// What is drawn is wider and higher than the viewport by so many pixels, which have no lights.
+/// The picture is wider and higher than the viewport by this many pixels, which have no lights.
 constexpr int beyond = 3;
 
-/// The lights that a check goes through: in large pictures few, as it does so in every pixel. Masks with z-bins are
-/// searched for each of them, and Mesa's llvmpipe ends a shader's loops after 65,535 rounds.
+/// Returns how many lights a check goes through in every pixel: few in large pictures. Masks with z-bins are searched
+/// for each light, and Mesa's llvmpipe ends a shader's loops after 65,535 rounds.
 inline std::uint32_t checked_lights(const lightbin::SnippetOptions& options, std::uint32_t width) {
     return width > 100 ? 8 : options.masks ? 100 : 3000;
 }
@@ -55,7 +56,7 @@ inline std::uint32_t reader_light_count(const lightbin::SnippetOptions& options)
     return options.format.ids == IdWidth::u8 ? 200 : options.format.ids == IdWidth::u16 ? 50000 : 100000;
 }
 
-/// The scales of the projection of reader_job(), and how far to the side in NDC each view is from the one before it.
+/// The projection's scales in reader_job(), and the distance in NDC from one view to the next.
 constexpr float scale_x = 1.2f, scale_y = 1.7f, view_shift = 0.25f;
 
 class ReaderText {
@@ -88,7 +89,7 @@ private:
         return translate(glsl, dialect_.hlsl, dialect_.es);
     }
 
-    /// What must be above a snippet. A device's logarithm may be as wrong as it likes: where a heat map is wanted, too, it is.
+    /// Returns the lines above a snippet. For heat maps the logarithm is made inaccurate, as a device's may be.
     std::string head() const {
         std::string text = version_line(options_.language);
         if (multiview_ && !dialect_.hlsl)
@@ -99,7 +100,7 @@ private:
         return text;
     }
 
-    /// The depth of a pixel. The bits are looked up at run time, as WGSL has no constants that are infinite.
+    /// Returns the expression for a pixel's depth. Its bits come from a table, as WGSL has no infinite constants.
     std::string depth() const {
         if (options_.slicing == Slicing::none) return "0.0";
         const std::string own = options_.viewport_corner ? "(pixel - " + corner() + ")" : "pixel";
@@ -116,8 +117,8 @@ private:
         return text + "    return bits;\n}\n";
     }
 
-    /// The beginning of a loop over a pixel's list, or over all lights and whether the list lacks them: a macro, or in WGSL
-    /// two functions.
+    /// Returns the beginning of a loop over a pixel's list, or over all lights with the question whether the list lacks
+    /// them: a macro, or in WGSL two functions.
     std::string begin_loop() const {
         const std::string arguments = "pixel, depth" + view_;
         if (!dialect_.webgpu) return "    $for_each_light(light, " + arguments + ") {\n";
@@ -155,8 +156,8 @@ private:
         return text;
     }
 
-    /// Lines that add to `hash` where a check or the window function says what is not so. `here` is the pixel as the view
-    /// counts it. `listed` is the sum of 1 + id of the lights listed.
+    /// Returns lines that add to `hash` where a check or the window function gives a wrong answer. `here` is the pixel
+    /// as the view counts it; `listed` is the sum of 1 + id over the listed lights.
     std::string checks(const std::string& lights) const {
         const std::string views = number(options_.views);
         std::string text;
@@ -196,7 +197,7 @@ private:
         return lightbin::detail::replaced(text, "@", view_);
     }
 
-    /// Without multiview, the number of a pixel's view is that of a band of rows.
+    /// Without multiview, the picture has a band of rows for each view, so a pixel's row gives the number of its view.
     std::string read() const {
         if (!several_ || multiview_) return "";
         const std::string band = number(height_ / (options_.views + 1)),

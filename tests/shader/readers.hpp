@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every form of the snippet, and runs of them: what every pixel reads is known.
+// Every form of the snippet, and runs of them for which it is known what every pixel must read.
 #pragma once
 
 #include "builders.hpp"
@@ -22,7 +22,7 @@ struct ScreenSize {
     int width, height, tile_size;
 };
 
-/// Every place and writing of the lists that a language has; the other options are as given.
+/// Returns the options with every storage and encoding of lists that a language has.
 inline std::vector<lightbin::SnippetOptions> every_list(lightbin::SnippetOptions options) {
     using namespace lightbin;
     const detail::Dialect dialect = detail::Dialect{options.language};
@@ -65,15 +65,15 @@ inline lightbin::SnippetOptions with_switches(lightbin::SnippetOptions options, 
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
     options.heat_map = switches & 8;
-    // One of these at a time, in pixels of every kind.
+    // Only one of these options is on at a time.
     options.view_check = switches / 4 == 3;
     options.list_check = switches / 4 == 0;
     options.window = switches / 4 == 1;
     return options;
 }
 
-/// Every list of a language, and where the constants are, with no switch on. Bindings are numbered so that no two kinds
-/// share a number: glslang puts the registers t, u and b of HLSL in one row.
+/// Returns every storage of lists and constants in a language, with all switches off. Bindings of different kinds get
+/// different numbers, because glslang counts HLSL's registers t, u and b together.
 inline std::vector<lightbin::SnippetOptions> every_list(lightbin::ShaderLanguage language,
                                                        lightbin::Slicing slicing) {
     const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
@@ -101,7 +101,7 @@ inline std::vector<lightbin::SnippetOptions> every_list(lightbin::ShaderLanguage
     return every;
 }
 
-/// The masks with wave loops, if the language has them.
+/// Returns the options for masks with loops by wave (subgroup) operations, if the language has them.
 inline std::vector<lightbin::SnippetOptions> every_wave_list(lightbin::ShaderLanguage language,
                                                             lightbin::Slicing slicing) {
     std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
@@ -111,7 +111,7 @@ inline std::vector<lightbin::SnippetOptions> every_wave_list(lightbin::ShaderLan
     return every;
 }
 
-/// The lists with two views.
+/// Returns the options for lists of two views.
 inline std::vector<lightbin::SnippetOptions> every_list_of_views(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing) {
     std::vector<lightbin::SnippetOptions> every = every_list(language, slicing);
@@ -121,8 +121,8 @@ inline std::vector<lightbin::SnippetOptions> every_list_of_views(lightbin::Shade
     return every;
 }
 
-/// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between
-/// them have every switch on and off; with wave loops one, with two views one.
+/// Returns the options of every storage with every set of switches. With depth slices each has two sets in turn, so
+/// that every switch is on in some and off in others; with wave loops or two views one.
 inline std::vector<lightbin::SnippetOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<lightbin::SnippetOptions> every;
@@ -143,8 +143,8 @@ inline std::vector<lightbin::SnippetOptions> every_reader(lightbin::ShaderLangua
     return every;
 }
 
-/// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
-/// behind the eye. `copies` of each in view are there, with other ids.
+/// Returns `count` spheres, about 40 of them in view, half of these close behind another one; the last one is in view,
+/// the rest are behind the eye. Each in view exists `copies` times.
 inline std::vector<lightbin::Sphere> reader_lights(std::size_t count, std::size_t copies) {
     std::mt19937 engine(5);
     const auto number = [&](float low, float high) {
@@ -161,7 +161,7 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count, std::size_
     return lights;
 }
 
-/// Gives a texture whole rows: so many texels each as the text has it, or as the grid has columns of tiles.
+/// Pads a texture to whole rows, as wide as the text says or as the grid has columns of tiles.
 inline void fit_texture(Input& input, int tiles_x) {
     input.width = input.binding.width ? input.binding.width : static_cast<std::uint32_t>(tiles_x);
     const std::size_t row = std::size_t{input.width} * input.binding.stride;
@@ -195,7 +195,7 @@ Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& 
         grids.push_back(*binner.bin(views.back(), spheres, inputs));
         bins.insert(bins.end(), grids.back().ranks().bins.begin(), grids.back().ranks().bins.end());
     }
-    // The views' grids one after another.
+    // Makes the grids of the views one after another.
     std::size_t cells = 0, entries = 0;
     for (const auto& each : grids) {
         cells += each.ranges().size();
@@ -246,7 +246,7 @@ Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& 
         if (binding.resource == ShaderResource::texture_2d) fit_texture(job.inputs.back(), grid->tiles_x());
     }
 
-    // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
+    // The tile size in the shader: the constants may be unset, and rows below the viewport wrap around.
     const std::uint32_t tile_size =
         unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
     const std::vector<float> depths = reader_depths();
@@ -302,7 +302,7 @@ struct ReaderRun {
     }
 };
 
-/// Every list of two views, drawn by multiview in fragment shaders; the other options take turns.
+/// Returns runs of every storage with two views, drawn by multiview in fragment shaders; other options take turns.
 inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<ReaderRun> runs;

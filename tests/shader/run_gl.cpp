@@ -19,7 +19,7 @@ int main(int count, char** arguments) {
         Tally tally;
         if (count == 3) {
             each_text(language, {}, [&](const Job& job) {
-                // Mesa's software renderer has no subgroups and no multiview in OpenGL.
+                // Mesa's software renderer lacks subgroups and multiview in OpenGL.
                 if (job.views > 1 || job.text.find("subgroupMin") != std::string::npos) return;
                 tally.count(job, [&] {
                     glDeleteProgram(device.program(job));

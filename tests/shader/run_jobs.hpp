@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs jobs on a device and compares. A device has `std::vector<std::uint32_t> run(const Job&)`, which throws
-// std::runtime_error where the text is refused.
+// Runs jobs on a device and compares results. A device has `std::vector<std::uint32_t> run(const Job&)`, which throws
+// std::runtime_error if the text is refused.
 #pragma once
 
 #include "builders.hpp"
@@ -14,7 +14,7 @@
 struct Tally {
     int jobs = 0, refused = 0, wrong = 0;
 
-    /// Does something with a job, `what` returning whether the result is right.
+    /// Counts a job; what(job) returns whether its result is right.
     template <class What> void count(const Job& job, const What& what) {
         ++jobs;
         std::string problem = "is wrong";
@@ -45,7 +45,7 @@ void run_readers(Device& device, const std::vector<ReaderRun>& runs, const Share
         tally.run(device, runs[i].job());
 }
 
-/// The reduction of depth buffers; of multisample ones if the device has them.
+/// Runs the shaders that reduce depth buffers; multisample ones if the device supports them.
 template <class Device>
 void run_reductions(Device& device, lightbin::ShaderLanguage language, bool multisample, const Share& share,
                     Tally& tally) {

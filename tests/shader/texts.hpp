@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-/// A text to compile, and what it binds, without bytes.
+/// Returns a job to compile a text, with its bindings but without data.
 inline Job text_job(std::string name, lightbin::ShaderLanguage language, Stage stage,
                     lightbin::ShaderText shader, int samples = 1) {
     Job job;
@@ -47,7 +47,7 @@ inline Job cull_text_job(const CullText& text) {
                     std::move(shader));
 }
 
-/// Hands a share of the texts to visit(job).
+/// Calls visit(job) for a share of all texts of a language.
 template <class Visit>
 void each_text(lightbin::ShaderLanguage language, const Share& share, const Visit& visit) {
     const lightbin::detail::Dialect dialect{language};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The files of verdicts on spots and on boxes, read as an engine's tests would read them: each file is whole, and every
-// verdict is proven again. That lightbin misses no spot and no box is proven in tests/oracle, of other ones.
+// Reads the files of answers whether spots and boxes meet cells as another engine's tests would: each file is complete,
+// and every answer is proven again. That lightbin misses no light is tested in tests/oracle.
 #include "../../bench/exact/box.hpp"
 #include "../../bench/exact/oracle.hpp"
 #include "../../bench/exact/spot.hpp"
@@ -24,7 +24,7 @@ struct Proof {
     std::size_t lights = 0, verdicts = 0, met = 0, wrong = 0;
 };
 
-/// A light in the exact arithmetic's form, from the numbers of a line.
+/// Returns a light for the exact arithmetic from the numbers in a line.
 oracle::ExactSpot spot(const std::vector<float>& v) {
     return oracle::exact_spot(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]);
 }
@@ -67,7 +67,7 @@ template <class Read> Proof proof_of(const std::string& path, const std::string&
             camera.zero_to_one = word == "0";
         } else if (key == "forward") {
             words >> forward;
-            // The declaration that an orthographic matrix needs: its depth grows the other way.
+            // An orthographic matrix needs the setting "reversed" if its depth grows the other way.
             camera.reversed = camera.m[2][3] == 0 && (camera.m[2][2] > 0) != (forward > 0);
             grid = std::make_unique<oracle::Oracle>(camera);
         } else if (key == "grid") {

@@ -1,5 +1,5 @@
-// What advise() counts against lists that are searched pixel by pixel, and the times that it takes on clocks that this
-// file winds: checked() sees that the cheapest plan comes first. Nothing here depends on how fast the machine is.
+// Compares what advise() counts with lists searched pixel by pixel, and its times with clocks that this file controls;
+// checked() sees that the cheapest plan comes first. Nothing here depends on real time.
 #include "scene.hpp"
 
 #include <lightbin/advise.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr float unbounded = std::numeric_limits<float>::infinity();
 
-/// Ground below the eye up to the horizon, blocks on it, sky above: window depth a pixel.
+/// Returns the window depths of a picture: ground below the eye up to the horizon, blocks on it, and sky.
 std::vector<float> ground_depth(ImageSize size) {
     std::vector<float> depth;
     for (int y = 0; y < size.height; ++y)
@@ -41,7 +41,7 @@ struct Bounds {
     ZBounds reduced;
 };
 
-/// What most cases here are about: ground, and lights on it.
+/// The scene of most cases here: a view of ground, and lights on it.
 struct Street {
     ImageSize size = {640, 360};
     View view = test::view(size, 8);
@@ -50,7 +50,7 @@ struct Street {
     std::vector<glm::vec4> lights = test::random_lights(200, 5);
 };
 
-/// A clock that stands still but for builds, which last as long as `build_ns` says of the first, second ... one.
+/// A clock that moves only during builds: the n-th build takes build_ns(n).
 struct WoundClock {
     using duration = std::chrono::nanoseconds;
     using time_point = std::chrono::time_point<WoundClock>;
@@ -121,7 +121,7 @@ double evaluations(ImageSize size, const auto& lights_at) {
     return static_cast<double>(sum);
 }
 
-/// The view depths of ground_depth(), infinity where nothing is.
+/// Returns the view depths of ground_depth(); infinity where nothing is drawn.
 std::vector<float> view_depths(const View& view, ImageSize size) {
     std::vector<float> depths;
     for (const float depth : ground_depth(size))
@@ -137,7 +137,7 @@ Advice advised_in_slices(const View& view, const auto& lights, const DepthSample
                    costs);
 }
 
-/// Of the street, on a clock on which each build takes 100 ns.
+/// Returns the advice for the street in slices, by a clock on which each build takes 100 ns.
 Advice advised_in_slices_of(const Street& street, const AdviceCosts& costs) {
     const std::vector<float> depths = view_depths(street.view, street.size);
     WoundClock::build_ns = each_100;
@@ -148,7 +148,7 @@ Advice advised_in_slices_of(const Street& street, const AdviceCosts& costs) {
                    costs);
 }
 
-/// A pixel's depth, and what it evaluates of a plan's grid: by asking each light.
+/// A pixel's depth, and the lights that it evaluates with a plan's grid, found by testing each light.
 template <Options options>
 std::size_t lights_at(const LightGrid<std::uint32_t>& grid, const Slices& slices, int tile_x, int tile_y,
                       float depth) {
@@ -173,7 +173,7 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
     const View view = test::view({311, 197}, 16);
     const auto lights = test::random_lights(150, 7);
     const std::vector<float> depths = view_depths(view, {311, 197});
-    // All pixels, and every third row and column of them: those in whose middle the samples are.
+    // Counts all pixels, and every third row and column: the samples are in the middle of these blocks.
     for (const int step : {1, 3}) {
         const ImageSize size = {311 / step, 197 / step};
         const View of_samples = test::view({size.width * step, size.height * step}, 16);
@@ -250,7 +250,7 @@ TEST_CASE("entries and evaluations are those of the plans' grids, of as many sid
             return given;
         };
         const Advice advice = advised(view, lights, {}, sides_of(bounds));
-        // Tiles of 8, 16, 32, 64 and 611 pixels; masks, lists, lists of a depth test.
+        // Expects plans for tiles of 8, 16, 32, 64 and 611 pixels: masks, lists, lists with a depth test.
         CHECK(std::ranges::count(advice.plans(), true, &AdvicePlan::depth_test) == (sides > 0 ? 5 : 0));
         CHECK(std::ranges::count(advice.plans(), false, &AdvicePlan::depth_test) == 5 + 5 + 1);
         for (const AdvicePlan& plan : advice.plans()) {
@@ -307,7 +307,7 @@ TEST_CASE("small tiles' endless sides and NaNs merge to what hides nothing that 
 
 TEST_CASE("builds that are disturbed change nothing") {
     const Street street;
-    // First builds find no memory; later, one in eight is a hundred times as long.
+    // The first builds allocate memory; later, one in eight takes a hundred times as long.
     const auto disturbed = [](std::size_t build) {
         std::mt19937 random(static_cast<std::uint32_t>(build));
         return std::int64_t{build < 5 || random() % 8 == 0 ? 100'000'000 : 1'000'000};
@@ -340,7 +340,7 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
     }
     for (const AdvicePlan& plan : sliced.plans())
         if (plan.tiled) check(plan, with_sliced_options<base>(plan, options_of), base);
-    // What is handed on may be changed, and is not copied.
+    // Lights that are passed on may be changed, and are not copied.
     int seen = 0;
     auto visit = [&seen]<Options options>() mutable -> int& { return ++seen; };
     static_cast<void>(++with_options(advice.best(), visit));
@@ -390,7 +390,7 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
 
 namespace {
 
-/// Whether a plan has the techniques that verdicts are on, in their order, by its words alone.
+/// Returns which techniques a plan uses, in the order of the verdicts, read from the plan's text.
 std::vector<bool> techniques_of(const AdvicePlan& plan) {
     const std::string words = "," + to_string(plan) + ",";
     const auto says = [&](const char* word) { return words.find(word) != words.npos; };
@@ -398,8 +398,8 @@ std::vector<bool> techniques_of(const AdvicePlan& plan) {
     return {says(" px,"), says(" masks,"), tested && !sliced, tested, sliced, says(" z_bins,")};
 }
 
-/// Each verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's,
-/// whose form is tested in tests/gl/advise.sh.
+/// Checks that each verdict on a technique follows from the plans' costs, and that the text has a line for each.
+/// tests/gl/advise.sh tests the text itself.
 void check_verdicts(const Advice& advice) {
     for (const AdvicePlan& plan : advice.plans()) {
         std::string lines;
@@ -490,7 +490,7 @@ TEST_CASE("lights in any form, on any instruction set, count alike; in words, a 
     const View view = test::view({1000, 700}, 16);
     const auto lights = test::random_lights(1000, 8);
     const float identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    // On a clock that stands still the order is that of the evaluations.
+    // On a clock that does not move, plans are sorted by light evaluations.
     const Advice first = advised_on(none_takes_time, view, lights),
                  moved = advised_on(none_takes_time, view, world_space(lights, identity));
     CHECK(moved.best().evaluations == doctest::Approx(first.best().evaluations).epsilon(0.02));

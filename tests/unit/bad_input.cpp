@@ -1,5 +1,5 @@
-// Lights that are switched off, and the empty and the odd. That bad input stays local is proven by tests/oracle and
-// tests/hunt.
+// Lights that are switched off, empty input and odd input. That bad input harms no other light is tested in
+// tests/oracle and tests/hunt.
 #include "scene.hpp"
 #include <cmath>
 #include <limits>
@@ -38,7 +38,7 @@ TEST_CASE("lights that are switched off are no bad input, whatever their other n
     check(spots);
     check(boxes);
     check(vec4s);
-    // What makes lights of other shapes leaves them off.
+    // Spheres around other shapes that are switched off are switched off, too.
     const glm::vec3 a(1, 2, 3), b(7, 2, 11);
     for (const Sphere& made :
          {tube_sphere(a, b, -1), rectangle_sphere(a, b, b, -1), bounding_sphere(spots[0]), bounding_sphere(boxes[0]),

@@ -1,4 +1,4 @@
-// Boxes: what the proofs in tests/oracle don't ask.
+// Boxes: what the tests in tests/oracle do not cover.
 #include "scene.hpp"
 
 #include <lightbin/box.hpp>
@@ -101,7 +101,7 @@ TEST_CASE("the functions that make boxes contain what they are named after, and 
         const Box tube = tube_box(c, c + x, radius);
         CHECK(contains(tube, c + std::abs(unit(random)) * x + radius * glm::normalize(s)));
         CHECK(!contains(tube, c + x + 1.02f * radius * glm::normalize(x)));
-        // The sphere of a whole box holds its corners, and one of them is on it.
+        // The sphere around a box holds all corners and touches one of them.
         float farthest = 0;
         for (int corner = 0; corner < 8; ++corner)
             farthest = std::max(farthest,

@@ -9,7 +9,7 @@ using namespace lightbin;
 
 namespace {
 
-/// Whether the first of two lights stays where only one of them can.
+/// Returns whether light a is kept if only one of a and b can be.
 bool goes_before(const std::vector<float>& weights, std::uint32_t a, std::uint32_t b) {
     const bool a_is_none = std::isnan(weights[a]), b_is_none = std::isnan(weights[b]);
     if (a_is_none != b_is_none) return b_is_none;
@@ -47,7 +47,7 @@ test::Lists expected(const test::Lists& lists, const std::vector<std::uint32_t>&
     return kept;
 }
 
-/// Checks one call, and that the grid is whole: its ranges follow one another, and every entry is kept or counted.
+/// Checks one call: the ranges follow one another, and every entry is kept or counted as dropped.
 template <class Id>
 void check_limit(Budget<Id>& budget, const LightGrid<Id>& grid, const std::vector<float>& weights,
                  const BudgetLimits& limits) {
@@ -75,7 +75,7 @@ void check_limit(Budget<Id>& budget, const LightGrid<Id>& grid, const std::vecto
     if (limited->entries_cut == 0) CHECK(kept.ids().data() == grid.ids().data());
 }
 
-/// All limits that matter for a grid: none, and around the longest list and the number of entries.
+/// Checks all limits that matter: none, and those near the longest list and near the number of entries.
 template <class Id> void check_limits(const LightGrid<Id>& grid, const std::vector<float>& weights) {
     Budget<Id> budget;
     const std::uint32_t longest = list_lengths(grid).longest,
@@ -86,7 +86,7 @@ template <class Id> void check_limits(const LightGrid<Id>& grid, const std::vect
             check_limit(budget, grid, weights, {per_cell, per_frame});
 }
 
-/// Weights of a kind: 0 random, 1 few values, 2 all the same, 3 with every special value, 4 ascending, 5 NaN alone.
+/// Returns weights: 0 random, 1 few values, 2 all equal, 3 with special floats, 4 ascending, 5 only NaN.
 std::vector<float> weights_of(std::size_t count, int kind, std::uint32_t seed) {
     std::mt19937 random(seed);
     constexpr float endless_weight = std::numeric_limits<float>::infinity(),

@@ -1,5 +1,5 @@
-// Slices, and clusters as shaders look them up. That clusters miss no light, and what they list beyond it, is proven in
-// tests/oracle/spheres.cpp.
+// Slices, and clusters (tiles cut into slices) as shaders look them up. tests/oracle/spheres.cpp tests that they miss
+// no light.
 #include "scene.hpp"
 
 #include <limits>
@@ -46,8 +46,8 @@ float rough_log2(float x, float sign) {
     return static_cast<float>(exact + static_cast<double>(sign) * (0.5f <= x && x <= 2 ? 0x1p-21 : 3 * unit));
 }
 
-/// How a shader of one's own looks up slices: floor(place * scale + bias), place being the depth or its logarithm.
-/// SimGear's is in tests/renderers/simgear.cpp.
+/// A shader's own formula for slices: floor(place * scale + bias), with the depth or its logarithm as place. SimGear's
+/// is tested in tests/renderers/simgear.cpp.
 struct OwnFormula {
     bool by_log2;
     float scale, bias;
@@ -66,8 +66,7 @@ struct OwnFormula {
     }
 };
 
-/// Of spheres that end at depths around each boundary, how many the slice lacks that such a shader looks up at that
-/// depth.
+/// Counts spheres that end at a depth near a boundary and are not in the slice that such a shader finds there.
 template <Options options> int missed(const Slices& slices, const OwnFormula& formula) {
     std::vector<Sphere> lights;
     std::vector<float> depths;
@@ -107,7 +106,7 @@ template <Options options> int missed(const Slices& slices, const OwnFormula& fo
 template <Options options> void check_margin() {
     const auto check = [](const Slices& slices, const OwnFormula& formula) {
         CHECK(missed<options>(slices.with_margin(0x1p-14f), formula) == 0);
-        // Bins are often given lights that end close by.
+        // Z-bins often list lights that end close by anyway, so only clusters must lose some without a margin.
         if (options.slicing == Slicing::clusters) CHECK(missed<options>(slices, formula) > 0);
     };
     check(*Slices::exponential(24, 5, 200), OwnFormula::exponential(24, 5, 200));
@@ -148,7 +147,7 @@ TEST_CASE("a margin takes a light to no slice that is further off") {
     CHECK(slices_of(-2, 3) == std::vector<int>{1, 2});
     CHECK(slices_of(-3, 4) == std::vector<int>{0, 1, 2});
     CHECK(slices_of(5, endless).size() == 5);
-    // Bins, whose lights are found by the table alone.
+    // Z-bins, where shaders look lights up in the table.
     const Slices even = *Slices::linear(100, 0, 100);
     const std::vector<Sphere> light = {{0, 0, -42, 2}};
     Binner<Options{.slicing = Slicing::z_bins}> binner;

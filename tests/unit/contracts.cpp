@@ -59,7 +59,7 @@ TEST_CASE("a plain function runs a Parallel's work") {
 
 namespace {
 
-/// Checks that to_string() has another text for each value of an enum from the first to the last.
+/// Checks that to_string() returns a different text for each value of an enum.
 template <class Enum> void check_words(Enum first, Enum last) {
     std::set<std::string> words;
     int count = 0;
@@ -80,7 +80,7 @@ TEST_CASE("an error's sentence has its numbers, with their sign where what was g
         CHECK(message.find_first_of("{}") == std::string::npos);
         CHECK((message.find("1234") != std::string::npos) == (has("{needed}") || has("{given}")));
         CHECK((message.find("5678") != std::string::npos) == has("{available}"));
-        // Users of C and of JavaScript read it, too: it names nothing that C++ alone has, and no function.
+        // Users of C and JavaScript read the same text, so it must not name functions or anything that only C++ has.
         for (const char* const in_one_language : {"::", "()", "(numbers", "Binner", "lightbin_", ".hpp"})
             CHECK_MESSAGE(!has(in_one_language), sentence);
     }

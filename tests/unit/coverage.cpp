@@ -13,7 +13,7 @@ using namespace lightbin;
 
 namespace {
 
-/// The ids in each tile's lists, once and in order.
+/// Returns the ids in the lists of each tile over all slices, sorted and without repeats.
 template <class Id> test::Lists tiles_of(const LightGrid<Id>& grid) {
     test::Lists tiles;
     for (int y = 0; y < grid.tiles_y(); ++y)
@@ -39,7 +39,7 @@ test::Lists tiles_of(const std::vector<LightCoverage>& covered, const View& view
     return tiles;
 }
 
-/// Of half angles to 90 degrees, or whole spheres.
+/// Returns spots with half angles up to 90 degrees; some are whole spheres.
 std::vector<Spot> some_spots(std::size_t count, std::uint32_t seed) {
     std::vector<Spot> spots = test::random_kinds(0, count, 0, seed).spots;
     for (Spot& spot : spots)
@@ -47,7 +47,7 @@ std::vector<Spot> some_spots(std::size_t count, std::uint32_t seed) {
     return spots;
 }
 
-/// Spheres for a view: its depths are those of random_lights(), whichever way it looks.
+/// Returns spheres at the depths of random_lights() for a view, whichever way it looks.
 std::vector<glm::vec4> lights_before(const View& view, std::size_t count, std::uint32_t seed) {
     auto lights = test::random_lights(count, seed);
     const bool forward = view.image_point({0, 0, 1}).depth > 0;
@@ -56,8 +56,8 @@ std::vector<glm::vec4> lights_before(const View& view, std::size_t count, std::u
     return lights;
 }
 
-/// The size of a sphere's projection. In each image axis that is a disc's: points of its edge beyond the near plane,
-/// and where edge and near plane meet. Without perspective nothing is cut off.
+/// Returns the size of a sphere's image in pixels. Each image axis shows a disc: points of its edge beyond the near
+/// plane are tried, and where edge and near plane meet. Without perspective nothing is cut off.
 double sampled_pixels(const View& view, const glm::dvec4& sphere) {
     const double forward = view.image_point({0, 0, 1}).depth, z = forward * sphere.z, r = sphere.w,
                  near_z = view.orthographic() ? -HUGE_VAL : view.near_depth();
@@ -171,7 +171,7 @@ TEST_CASE("a sphere's size in pixels is that of its projection, cut off at the n
 
 TEST_CASE("the size in pixels of small, large and infinite spheres") {
     const View view = test::view({640, 360}, 32);
-    // Pixels for a slope of 1, of the matrix as it is rounded to float.
+    // Pixels for a slope of 1, with the matrix rounded to float.
     const double per_slope = view.image_point({1, 0, -1}).x - view.image_point({0, 0, -1}).x;
     const std::vector<Sphere> lights = {{0, 0, -10, 0},          {0, 0, -10, 1e-6f}, {0, 0, -10, 1e-20f},
                                         {0, 0, -500, 1},         {3, -2, -9, 1},     {0, 0, -10, 9.89f},
@@ -241,7 +241,8 @@ TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of
                 const double r = spot.radius, cosine = spot.cos_half_angle, z = forward * spot.z;
                 const double aside = std::hypot(spot.axis_x, spot.axis_y), ahead = forward * spot.axis_z;
                 const double length = std::hypot(aside, ahead), sine = std::sqrt(1 - cosine * cosine);
-                // From the apex towards the eye, -1, or away from it: to the sphere, to the rim, or nowhere.
+                // How far the spot reaches from its apex to (-1) or from (1) the eye: to its sphere, its rim or
+                // nowhere.
                 const auto reach = [&](double towards) {
                     const double along = towards * ahead / length;
                     if (cosine < 0 || along >= cosine) return r;

@@ -16,7 +16,7 @@ using namespace lightbin;
 
 namespace {
 
-// A grid that no binning made: `tiles` lists of up to `longest` ids below `lights`.
+// A grid made without a Binner: `tiles` lists of up to `longest` ids below `lights`.
 struct MadeGrid {
     std::vector<ListRange> tiles;
     std::vector<std::uint32_t> ids;

@@ -1,6 +1,5 @@
-// The light grid itself: both id types, lengths of lists, and the view that an error advises. That no light is missed,
-// and that the bytes do not depend on what the Binner did before, is proven in tests/oracle and tests/hunt; how many
-// lights are in view, in coverage.cpp.
+// The light grid: both types of ids, lengths of lists, and the view that an error recommends. tests/oracle and
+// tests/hunt test that no light is missed.
 #include "scene.hpp"
 
 #include <glm/common.hpp>
@@ -53,7 +52,7 @@ glm::dmat4 with_near_plane(glm::dmat4 projection, const glm::dvec4& plane) {
     return projection;
 }
 
-/// The same image without an oblique plane, as docs/matrices.md advises.
+/// Returns the projection without an oblique near plane, as docs/matrices.md recommends.
 glm::dmat4 without_near_plane(glm::dmat4 projection) {
     const double w = projection[2][3];
     projection[0][2] = projection[1][2] = 0;

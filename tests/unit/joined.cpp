@@ -1,4 +1,4 @@
-// Arrays of several kinds in one call: the grids must be those of the kinds alone, one after another in every list.
+// Lights of several kinds in one call: each list must have the entries of the kinds' own grids, one kind after another.
 #include "scene.hpp"
 
 #include <glm/ext/matrix_transform.hpp>
@@ -14,7 +14,7 @@ test::Lists joined_lists(Isa isa, const View& view, const LightRange& all, Light
     return test::id_lists<options>(view, all, in_three_parts, counts, isa);
 }
 
-/// Appends to each list those of another kind, whose ids go on from `first`.
+/// Appends lists of another kind; its ids continue from `first`.
 void append(test::Lists& to, const test::Lists& from, std::size_t first) {
     REQUIRE(to.size() == from.size());
     for (std::size_t cell = 0; cell < to.size(); ++cell)
@@ -64,7 +64,7 @@ TEST_CASE("joined arrays may be in spaces of their own, and of the caller's type
     append(expected, joined_lists<tested>(compiled_isa, view, spots), kinds.spheres.size());
     append(expected, joined_lists<tested>(compiled_isa, view, kinds.boxes), kinds.spheres.size() + kinds.spots.size());
     CHECK(joined_lists<tested>(compiled_isa, view, lights(std::span(kinds.spheres), spots, view_space(kinds.boxes))) == expected);
-    // A temporary span inside view_space() refers to an array that lives on.
+    // The array that a temporary span in view_space() refers to outlives the span.
     CHECK(joined_lists<tested>(compiled_isa, view, lights(view_space(std::span(kinds.spheres)), spots, kinds.boxes)) == expected);
 }
 

@@ -1,4 +1,4 @@
-// The ways lights come in: they must all give the same grid.
+// The forms in which lights are passed: all must give the same grid.
 #include "scene.hpp"
 
 #include <glm/ext/matrix_transform.hpp>
@@ -18,7 +18,7 @@ namespace {
 const View full_view = test::view({641, 361}, 16);  // the last tiles are partial
 const glm::mat4 full_turn = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
 
-/// With lights in this form, the lists are those of the spheres, also where a depth test reads the lights again.
+/// Checks that lights in this form give the lists of the spheres, also if a depth test reads the lights again.
 void check_form(const auto& lights, const std::vector<glm::vec4>& spheres) {
     constexpr Options tested = {.depth_test = true};
     const std::vector<float> low(full_view.tile_count(), 5.0f), high(full_view.tile_count(), 40.0f);
@@ -130,7 +130,7 @@ TEST_CASE("to_light is a lambda, a function or a function object, and its lights
     check(spheres, std::function<Sphere(const Lamp&)>(sphere_of));
     check(spots, [](const Lamp& lamp) -> const Spot& { return lamp.spot; });
     check(spots, [](const Lamp& lamp) { return Becomes{lamp.spot}; });
-    // Of a temporary span the elements live on.
+    // A temporary span is allowed, because its elements outlive it.
     CHECK(view_space(std::span<const Sphere>(spheres)).array.data() == spheres.data());
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("a sphere of doubles becomes one of floats that holds it, and is no la
         const glm::dvec4 light(number(-40, 40), number(-40, 40), number(-160, 127),
                                std::fabs(number(i % 3 == 0 ? -1000 : -30, i % 3 == 1 ? 126 : 30)));
         const Sphere sphere = detail::sphere_around(light.x, light.y, light.z, light.w);
-        // The farthest point of the one sphere from the other's centre; long double has 11 bits more.
+        // The point of one sphere farthest from the other's centre, in long double, which has 11 more bits.
         const long double dx = static_cast<long double>(light.x) - static_cast<long double>(sphere.x),
                           dy = static_cast<long double>(light.y) - static_cast<long double>(sphere.y),
                           dz = static_cast<long double>(light.z) - static_cast<long double>(sphere.z),

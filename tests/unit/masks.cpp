@@ -1,5 +1,5 @@
-// Masks of columns and rows: in every tile they must have the lights of a Binner's list, and with z-bins its order and
-// bins.
+// Masks of columns and rows: in every tile they must give the lights of a Binner's list; with z-bins also its order and
+// ranges.
 #include "scene.hpp"
 
 #include <lightbin/masks.hpp>
@@ -14,7 +14,7 @@ using namespace lightbin;
 
 namespace {
 
-/// The positions in ids() of a tile's lights.
+/// Returns the positions in ids() of the lights in a tile.
 std::vector<std::uint32_t> lights_in(const LightMasks& masks, int x, int y) {
     const auto column = masks.column(x), row = masks.row(y);
     std::vector<std::uint32_t> found;
@@ -30,7 +30,7 @@ bool ends(const LightMasks& masks, std::span<const std::uint32_t> mask) {
     return true;
 }
 
-/// What words() says of itself, against the other members.
+/// Checks words() against the other members.
 void check_words(const LightMasks& masks) {
     const std::span<const std::uint32_t> words = masks.words();
     const auto same = [&](std::size_t at, std::span<const std::uint32_t> part) {
@@ -78,7 +78,7 @@ bool same_tiles(const LightMasks& masks, const LightGrid<std::uint32_t>& grid) {
     return true;
 }
 
-/// Masks with and without z-bins, on every tier, against the grids of Binners.
+/// Compares masks with and without z-bins with the grids of Binners, on every instruction set.
 template <class LightRange> void check(const View& view, const LightRange& lights, const Slices& slices) {
     Binner<> binner;
     Binner<Options{.slicing = Slicing::z_bins}> ranking;
@@ -153,7 +153,7 @@ TEST_CASE("masks have the lights of the lists where words, and the sums of sever
     }
 }
 
-// Where there are the most of both, tests/oracle/families.cpp proves them.
+// tests/oracle/families.cpp tests the greatest numbers of columns and rows.
 TEST_CASE("masks have the lights of the lists where there are many columns or rows") {
     const auto spheres = test::random_lights(70, 5);
     const test::Kinds kinds = test::random_kinds(20, 20, 20, 6);

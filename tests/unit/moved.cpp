@@ -1,9 +1,9 @@
-// Optimised, as compilers fuse products and sums only then.
+// Compiled with optimisation, because only then do compilers fuse products and sums.
 #include "scene.hpp"
 
 using namespace lightbin;
 
-// Where compilers fuse a tier's products and sums, it is off by one rounding, which few numbers show.
+// If a compiler fuses products and sums of one instruction set, it differs by one rounding, which few numbers show.
 TEST_CASE("lights that are moved in doubles are the same on every tier where their radius is about to step") {
     const View view = *View::from_projection(glm::ortho(-1.0f, 1.0f, -1.0f, 1.0f, 0.0f, 10.0f), {64, 64});
     std::mt19937 random(1);

@@ -1,4 +1,4 @@
-// What the unit tests share: a view, random lights, and grids in a form that is easy to compare.
+// What the unit tests share: views, random lights, and grids in a form that is easy to compare.
 #pragma once
 
 #include <lightbin/box.hpp>
@@ -33,7 +33,7 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
     }();
     return tiers;
 }
-/// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
+/// Returns a view 60 degrees high, near 0.1, far 1000, by OpenGL's conventions.
 inline lightbin::View view(lightbin::ImageSize viewport, int tile_size) {
     const float aspect =
         viewport.height > 0 ? static_cast<float>(viewport.width) / static_cast<float>(viewport.height) : 1.0f;
@@ -51,7 +51,7 @@ inline std::vector<lightbin::View> cameras(int tile_size) {
     return all;
 }
 
-/// Around and in front of the eye, which looks down -z; some behind, some around the eye.
+/// Returns lights around and in front of the eye, which looks down -z; some are behind it.
 inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> depth(-10.0f, 100.0f), side(-1.0f, 1.0f);
@@ -65,8 +65,8 @@ inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t see
     return lights;
 }
 
-/// Lights of each kind, around and in front of the eye: spots of half angles to 172 degrees, every third a whole
-/// sphere, and balls cut by boxes whose half axes have any angles.
+/// Lights of each kind around and in front of the eye: spheres, spots of half angles up to 172 degrees (every third a
+/// whole sphere), and spheres cut by boxes with half axes at any angles.
 struct Kinds {
     std::vector<lightbin::Sphere> spheres;
     std::vector<lightbin::Spot> spots;
@@ -125,7 +125,7 @@ inline std::size_t entries(const Lists& lists) {
     return sum;
 }
 
-/// Every tile of `outer` lists all that the same tile of `inner` lists.
+/// Returns whether every list of `outer` has all ids of the same tile's list of `inner`.
 inline bool is_superset(const Lists& outer, const Lists& inner) {
     if (outer.size() != inner.size()) return false;
     for (std::size_t tile = 0; tile < outer.size(); ++tile)
@@ -134,7 +134,7 @@ inline bool is_superset(const Lists& outer, const Lists& inner) {
     return true;
 }
 
-/// A loop for lightbin::Parallel, of threads at their least helpful: one, which takes the work from the end.
+/// A loop for lightbin::Parallel in the worst order: one thread does everything, from the end.
 inline constexpr auto backwards = [](std::size_t n, const auto& body) {
     while (n > 0)
         body(--n);
@@ -171,7 +171,7 @@ Lists id_lists(const lightbin::View& view, const LightRange& lights, const light
     return lists;
 }
 
-/// Calls visit with every rung that spots and boxes have kernels of their own for.
+/// Calls visit with every instruction set for which spots and boxes have kernels of their own.
 template <class Visit> void on_rungs(Visit visit) {
     using namespace lightbin;
     visit.template operator()<Options{}>();
@@ -180,8 +180,8 @@ template <class Visit> void on_rungs(Visit visit) {
     visit.template operator()<Options{.depth_test = true, .slicing = Slicing::z_bins}>();
 }
 
-/// Checks that each rung lists less than three quarters of the entries of the spheres that lights are parts of, no
-/// light that rectangles leave out, and each light where it is listed alone.
+/// Checks that on each such instruction set spots or boxes have less than three quarters of the entries of their
+/// spheres, no light outside of its rectangle, and each light where it is listed alone.
 template <class Light>
 void check_rungs(const std::vector<Light>& lights, const std::vector<lightbin::Sphere>& spheres) {
     const lightbin::View view = test::view({1283, 721}, 16);

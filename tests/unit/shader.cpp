@@ -1,5 +1,5 @@
-// The snippet's text: what is off leaves no line, and sentences name limits. That it compiles and reads the right lists
-// is tested in tests/shader, that what can't be is refused, and why, in tests/fuzz/shader.cpp.
+// The snippet's text: options that are off leave no line, and errors name limits. tests/shader tests that it compiles
+// and reads the right lists, tests/fuzz/shader.cpp what is refused.
 #include <doctest/doctest.h>
 
 #include <lightbin/shader.hpp>
@@ -26,7 +26,7 @@ bool has(const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
 }
 
-/// Each part is in a text with options, and not in the text without.
+/// Checks that each part is in the text with options, and not in the text without.
 void only_in(const std::string& with, const std::string& without, std::initializer_list<const char*> parts) {
     for (const char* part : parts) {
         CAPTURE(part);
@@ -100,7 +100,7 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(block, "16392"));
     CHECK(has(block, "16384"));
     CHECK(has(refusal({.storage = ListStorage::uniform_block}), "max_tiles"));
-    // A block is whole vectors: 5 tiles are 40 bytes and take 48.
+    // Blocks consist of whole vectors of 16 bytes: 5 tiles are 40 bytes and take 48.
     for (const std::uint32_t bytes : {40u, 47u})
         CHECK(has(refusal({.tiles_in_uniform_block = true, .max_tiles = 5, .uniform_block_bytes = bytes}),
                   "32"));
@@ -184,7 +184,7 @@ TEST_CASE("reduction and cull shaders: what is off leaves no line") {
 }
 
 TEST_CASE("reduction and cull shaders need no more than every device has") {
-    // Vulkan's and OpenGL ES 3.1's least limits: 128 invocations, 4 storage buffers; ES also has but bindings 0 to 3.
+    // Vulkan and OpenGL ES 3.1 guarantee 128 invocations and 4 storage buffers; ES only bindings 0 to 3.
     int texts = 0, sizes = 0;
     const auto check = [&](const Result<ShaderText>& made) {
         if (!made) return;

@@ -1,4 +1,4 @@
-// Spots beside spheres: what the proofs in tests/oracle don't ask.
+// Spots compared with spheres: what the tests in tests/oracle do not cover.
 #include "scene.hpp"
 
 #include <glm/ext/matrix_transform.hpp>
@@ -8,7 +8,7 @@ using namespace lightbin;
 
 namespace {
 
-/// In and around the view, with half angles of 0 to 80 degrees, every eighth a whole sphere.
+/// Returns spots in and around the view with half angles of 0 to 80 degrees; every eighth is a whole sphere.
 std::vector<Spot> random_spots(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(-1, 1), angle(0, 1.4f);
@@ -67,7 +67,7 @@ TEST_CASE("a matrix that bends cones makes spheres of spots") {
                as_spots = test::id_lists<Options{}>(view, world_space(spots, stretched));
     CHECK(test::is_superset(as_spheres, as_spots));
     CHECK(test::entries(as_spots) >= test::entries(as_spheres) * 999 / 1000);
-    // A matrix of floats is never exactly a rotation: that takes next to nothing from cones.
+    // A matrix of floats is never exactly a rotation, but its error hardly changes cones.
     const glm::mat4 turned = glm::rotate(glm::mat4(1.0f), 1.3f, glm::normalize(glm::vec3(1, 2, 3)));
     std::vector<Spot> moved = spots;
     for (Spot& spot : moved) {

@@ -1,5 +1,5 @@
-// What fits a machine of 64 bits and wraps in one of 32 is refused. Of tests/platforms.sh alone; on 64 bits a test of these
-// sizes would take the memory.
+// Sizes that fit 64 bits but overflow 32 bits are refused. Only tests/platforms.sh runs this: with 64 bits, tests of
+// such sizes would take too much memory.
 #include <cstdint>
 #if SIZE_MAX == UINT32_MAX
 #include <lightbin/lightbin.hpp>

@@ -130,7 +130,7 @@ TEST_CASE("a transposed matrix is refused as that, where it can be told") {
     CHECK(transposed(glm::ortho(-4.0f, 4.0f, -3.0f, 3.0f, 0.0f, 10.0f)) == ErrorCode::projection_transposed);
     CHECK(transposed(glm::ortho(-4.0f, 9.0f, -3.0f, 3.0f, -5.0f, 10.0f)) == ErrorCode::projection_transposed);
 
-    // What is refused for another reason keeps it.
+    // A matrix that is refused for another reason keeps that reason.
     const glm::mat4 view = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(0, 0, 0), glm::vec3(0, 1, 0)),
                     good = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
     CHECK(refusal(good * view) == ErrorCode::not_a_projection);
@@ -138,7 +138,7 @@ TEST_CASE("a transposed matrix is refused as that, where it can be told") {
     CHECK(refusal(view) == ErrorCode::image_axes_rotated);
 }
 
-// As Panda3D's lenses make them, which have z up in view space: x right, depth along y.
+// Panda3D's lenses have z up in view space: x is to the right, and depth is along y.
 TEST_CASE("a projection of other axes is refused by a text that says so, and accepted once they are changed") {
     const glm::mat4 to_z_up = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}},
                     perspective = {{1.5f, 0, 0, 0}, {0, 0, 1001 / 999.0f, 1}, {0, 2, 0, 0}, {0, 0, -2000 / 999.0f, 0}},
@@ -170,7 +170,7 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
           "perspective, 91.49 x 60 degrees, aspect 1.778, near 0.25, far 512, looks down -z "
           "(right-handed), 1920 x 1080 pixels in tiles of 32");
 
-    // The doubts by name; each is a question in the text.
+    // The properties of a view that are doubtful; each is a question in the text.
     const auto check = [](const lightbin::ViewSummary& of, const std::string& expected) {
         const std::pair<bool, const char*> all[] = {
             {of.looks_transposed, "transposed"}, {of.looks_like_view_matrix, "view matrix"},
@@ -226,7 +226,7 @@ void check_summary(const Made& made, lightbin::ImageSize viewport) {
     const auto [flat, clip, reversed, forward, far, flip_x, flip_y] = made;
     const double left = -0.3, right = 0.5, low = -0.2,
                  high = 0.7;  // where depth is 1; orthographic: anywhere
-    // z_clip = a depth + b, so that z_ndc is `first` on the near plane and `last` on the far one.
+    // z_clip = a depth + b, such that z_ndc is `first` on the near plane and `last` on the far plane.
     const double near = 0.25, lower = clip == ClipDepth::zero_to_one ? 0 : -1, first = reversed ? 1 : lower,
                  last = reversed ? lower : 1;
     double a = (last - first) / (far - near), b = first - a * near;
@@ -313,7 +313,7 @@ TEST_CASE("a view's grid can be made anew with other tiles") {
 
 namespace {
 
-/// A matrix and where it looks: view depth is `forward` times z.
+/// A projection matrix and its viewing direction: view depth is `forward` times z.
 struct Projected {
     glm::dmat4 matrix;
     double forward;
@@ -341,7 +341,7 @@ std::vector<Projected> all_kinds() {
     };
 }
 
-/// The pixel coordinates of a point by its definition: matrix, division by w, viewport.
+/// Checks the pixel coordinates of a point against their definition: matrix, division by w, viewport.
 void check_place(const View& view, const Projected& made, const lightbin::ViewPoint& point) {
     const long double p[] = {point.x, point.y, point.z, 1};
     long double clip[4] = {};
@@ -353,7 +353,7 @@ void check_place(const View& view, const Projected& made, const lightbin::ViewPo
                       y = view.origin() == WindowOrigin::lower_left ? up : height - up;
 
     const lightbin::ImagePoint place = view.image_point(point);
-    // The largest terms of the sums, times some roundings of doubles.
+    // The allowed error: the largest terms of the sums, times some roundings of doubles.
     const long double error = 1e-14L * (std::fabs(x) + std::fabs(y) + width + height) *
                               (1 + std::fabs(made.matrix[2][0]) + std::fabs(made.matrix[2][1]));
     CHECK(std::fabs(x - static_cast<long double>(place.x)) <= error);

@@ -1,5 +1,4 @@
-// Several views in one pair of buffers. That encode() takes the grid of all views is
-// proven in tests/shader, whose shaders read it.
+// Several views in one pair of buffers. tests/shader has shaders that read such encoded grids.
 #include "scene.hpp"
 
 #include <iterator>
@@ -19,7 +18,7 @@ std::vector<glm::vec4> seen_from(float aside, std::vector<glm::vec4> lights) {
     return lights;
 }
 
-/// The lists of one view in a grid of several.
+/// Returns the lists of one view from a grid of several.
 template <class Id> test::Lists lists_of_view(const LightGrid<Id>& grid, int view) {
     test::Lists lists;
     for (int slice = 0; slice < grid.slices(); ++slice)
@@ -48,8 +47,8 @@ template <class Id> struct Buffers {
     }
 };
 
-/// One Binner makes the grids of three views, and each is copied behind those before it. The lists of each view must be
-/// those that a Binner of its own makes.
+/// Makes the grids of three views by one Binner and copies each behind the last. The lists must be those that a
+/// separate Binner makes for each view.
 template <Options options> void check_shared(const View& view, const Slices& slices) {
     using Id = typename Binner<options>::Id;
     Buffers<Id> buffers;
@@ -135,7 +134,7 @@ TEST_CASE("views that do not fit into buffers, or not together, are an error and
     CHECK(buffers.unset_from(ranges, ids));
     check_too_small(2, *first);
 
-    // As many tiles, in other columns and rows; and as many cells, in slices.
+    // A view with as many tiles, but other numbers of columns and rows; and one with as many cells in slices.
     Binner<> other;
     for (const View& unlike :
          {test::view({200, 320}, 16), test::view({320, 208}, 8), test::view({330, 200}, 16)})

@@ -1,4 +1,4 @@
-// Z-bins: the lists against those of a Binner without, and the bins against every light asked in every bin.
+// Z-bins (depth intervals with a range of lights): lists against those without, every light tried in every bin.
 #include "scene.hpp"
 
 #include <limits>
@@ -7,7 +7,7 @@ using namespace lightbin;
 
 namespace {
 
-/// Whether a light's depths meet a slice, both with their ends. In doubles, which hold what these tests add up.
+/// Returns whether a light's closed depth interval meets a slice's, computed exactly in doubles.
 bool meets(const glm::vec4& light, const Slices& slices, int slice) {
     const auto at = [&](int i) { return double{slices.boundaries()[static_cast<std::size_t>(i)]}; };
     const double z = -double{light.z}, r = double{light.w};
@@ -22,7 +22,7 @@ void check_bins(const LightGrid<Id>& grid, const std::vector<glm::vec4>& lights,
     const LightCounts& counts = grid.light_counts();
     REQUIRE(order.size() == counts.lights - counts.rejected - counts.culled);
 
-    // A bin has the range of the lights that meet it; where none is counted that only meets a bin beside it, no more.
+    // A bin's range has the lights that meet it. It may begin or end with lights of a neighbouring bin, but no others.
     const auto range = [&](int first, int last) {
         BinRange met = {1, 0};
         for (std::uint32_t rank = 0; rank < order.size(); ++rank)
@@ -52,7 +52,7 @@ void check_bins(const LightGrid<Id>& grid, const std::vector<glm::vec4>& lights,
     }
 }
 
-/// Depths and radii of few bits, so that ends are exact and often boundaries.
+/// Returns lights whose depths and radii have few bits, so that their ends are exact and often at boundaries.
 std::vector<glm::vec4> exact_lights() {
     auto lights = test::random_lights(700, 41);
     for (glm::vec4& light : lights)

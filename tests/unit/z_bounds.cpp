@@ -1,4 +1,4 @@
-// reduce_depth: sizes. What the bounds hold is compared with rationals in tests/oracle.
+// Sizes of buffers for reduce_depth(). tests/oracle/depth.cpp compares its depth bounds with exact ones.
 #include "scene.hpp"
 
 #include <limits>
@@ -17,7 +17,7 @@ Reduced reduce(const View& view, const DepthBuffer& buffer) {
     return reduced;
 }
 
-/// Window depth of a view depth for test::view().
+/// Returns the window depth of a view depth in test::view().
 float window_depth(double z) {
     constexpr double near = 0.1, far = 1000.0;
     return static_cast<float>(0.5 + 0.5 * ((far + near) / (far - near) - 2 * far * near / (far - near) / z));
@@ -50,7 +50,7 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
     CHECK(code({.depth = depth, .samples = 2}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 65}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 63}, min, max) == ErrorCode::row_pitch_too_small);
-    // Pitches of which 63, or 64, make 0 or little where sizes wrap.
+    // Pitches (row lengths) that give 0 or little when they are multiplied by 63 or 64 and overflow.
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     for (const std::size_t pitch :
          {most, most - 63, most / 2 + 1, most / 64 + 1, most / 63 + 1, most / 63 + 2})

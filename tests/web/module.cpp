@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The module of examples/web hands the lights to the page that the renderer of examples/tiled_forward has. That the
-// page's lists lack none is seen in its pictures: tests/web/pictures.mjs.
+// Tests that examples/web gives the page the lights of the renderer examples/tiled_forward. tests/web/pictures.mjs sees
+// in pictures that the page's lists lack no light.
 #include "binned_lights.hpp"
 #include "moving_lights.hpp"
 #include "stage.hpp"
@@ -33,7 +33,7 @@ bool same_bytes(const auto& a, const auto& b) {
     return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
-// The module's lights are the renderer's, at rest and in motion, also where one is left out.
+// Checks that the module's lights are the renderer's, at rest and in motion, also if one is left out.
 void check_lights(Stage& stage) {
     const Camera& camera = stage.scene().cameras[0];
     for (const double seconds : {0.0, 12.5})

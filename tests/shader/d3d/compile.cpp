@@ -24,7 +24,8 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
     each_text(model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0 : lightbin::ShaderLanguage::hlsl_5_1, share,
               [&](const Job& job) {
                   if (model < "6" && job.text.find("WaveActiveMin") != job.text.npos) return;
-                  // From model 6.1 on, SV_ViewID is the number of a view. In older models a view is a layer of the target.
+                  // From model 6.1 on, SV_ViewID is a view's number. In older models each view is drawn to a layer of
+                  // the target.
                   compile(tally, job, job.views > 1 && model < "6_1" ? with_layers(job.text) : job.text);
               });
     std::printf("%s\n", tally.text("texts").c_str());

@@ -29,7 +29,7 @@ public:
         check(D3D11CreateDevice(nullptr, D3D_DRIVER_TYPE_HARDWARE, nullptr, 0, &level, 1, D3D11_SDK_VERSION,
                                 &device_, nullptr, &context_),
               "a Direct3D 11 device of feature level 11_0");
-        // Clockwise, as the others are culled; in a layer of the picture for each instance.
+        // The triangle is clockwise, otherwise it would be culled; with several views an instance draws to each layer.
         vertex_ = fxc_(R"(
 struct Corner {
     float4 position : SV_Position;
@@ -60,7 +60,7 @@ Corner main(uint index : SV_VertexID, uint view : SV_InstanceID) {
     }
 
 private:
-    // A text is compiled once, however often it runs: fxc takes longer than most runs.
+    // Compiles each text once, however often it runs, because fxc takes longer than most runs.
     const std::vector<char>& code_of(const Job& job) {
         const bool compute = job.stage == Stage::compute;
         const std::string text = job.views > 1 ? with_layers(job.text) : job.text;
@@ -78,7 +78,7 @@ private:
         }
         const bool structured = input.binding.resource == ShaderResource::writable_buffer ||
                                 input.binding.resource == ShaderResource::storage_buffer;
-        // Direct3D wants whole elements, and whole vectors of constants.
+        // Direct3D wants buffers of whole elements, and constants of whole vectors.
         const std::size_t unit = structured ? input.binding.stride
                                  : input.binding.resource == ShaderResource::uniform_block ? 16
                                                                                            : 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Microsoft's d3dcompiler_47.dll, which fxc is a shell of.
+// Calls Microsoft's d3dcompiler_47.dll, the compiler behind the program fxc.
 #pragma once
 
 #include <lightbin/shader.hpp>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-/// A text for multiview, whose view is a layer of the target, as in all models before 6.1.
+/// Changes a multiview text for models before 6.1, where the view is the layer of the target.
 inline std::string with_layers(const std::string& text) {
     return lightbin::detail::replaced(text, "SV_ViewID", "SV_RenderTargetArrayIndex");
 }

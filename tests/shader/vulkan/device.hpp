@@ -32,11 +32,10 @@ public:
 
     std::string name() const { return physical_.getProperties().deviceName; }
 
-    /// Messages of the validation layer so far; each is printed.
+    /// Returns the number of messages of the validation layer so far. Each is printed.
     int messages() const { return messages_; }
 
-    /// Does what the validation layer must complain about, and returns whether it did. That message is not
-    /// counted.
+    /// Makes a mistake that the validation layer must report, and returns whether it did. This message is not counted.
     bool validates() {
         const int before = messages_;
         try {
@@ -81,7 +80,7 @@ private:
         vk::raii::Image handle = nullptr;
         vk::raii::ImageView view = nullptr;
     };
-    /// What a run makes, which must outlive it.
+    /// The Vulkan objects of one run, which must live until it ends.
     struct Frame {
         vk::raii::CommandBuffer commands;
         std::vector<vk::raii::DescriptorSetLayout> layouts = {};
@@ -126,7 +125,7 @@ private:
                                                      .pUserData = &messages_}};
     }
 
-    /// The first family of queues must do: it draws and computes on all devices in software.
+    /// Uses the first queue family, which can draw and compute on all software devices.
     vk::raii::Device make_device() {
         const float priority = 1;
         const vk::DeviceQueueCreateInfo queue{.queueCount = 1, .pQueuePriorities = &priority};
@@ -161,7 +160,7 @@ private:
         return buffer;
     }
 
-    /// An image that stays in the general layout.
+    /// Makes an image that stays in the general layout, so that no transitions are needed.
     const Image& make_image(Frame& frame, vk::Format format, vk::Extent3D extent, std::uint32_t layers,
                             vk::ImageUsageFlags usage) const {
         Image& image = frame.images.emplace_back();
@@ -189,7 +188,7 @@ private:
         return image;
     }
 
-    /// What comes after sees all that was written before.
+    /// Makes all earlier writes visible to later commands.
     static void barrier(Frame& frame, vk::PipelineStageFlags after = every_stage) {
         const vk::MemoryBarrier all{.srcAccessMask = vk::AccessFlagBits::eMemoryWrite,
                                     .dstAccessMask = every_access};
@@ -210,7 +209,7 @@ private:
         }
     }
 
-    /// The job's inputs in memory, and descriptor sets that point at them.
+    /// Copies the job's inputs to memory, and makes descriptor sets that point at them.
     void bind(const Job& job, Frame& frame) const {
         std::vector<std::vector<vk::DescriptorSetLayoutBinding>> bindings;
         std::vector<vk::DescriptorPoolSize> sizes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Jobs as lines of JSON, with bytes in hexadecimal, and a device in another process: that which reads what this one prints.
+// Prints jobs as lines of JSON, with bytes in hexadecimal. Another process reads them and is the device.
 #pragma once
 
 #include "../job.hpp"
@@ -24,8 +24,8 @@ template <class T> std::string hexadecimal(const std::vector<T>& values) {
     return text;
 }
 
-/// What a runner does with a job: it compiles the text, also runs it and compares what it wrote, or runs it and hands back
-/// what it wrote.
+/// What the other process does with a job: compiles its text; runs it and compares the result; or runs it and returns
+/// the result.
 enum class JobUse : std::uint8_t { compiles, runs, asks };
 
 inline std::string json(const Job& job, JobUse use) {
