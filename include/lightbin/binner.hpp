@@ -18,8 +18,9 @@ template <bool depth_test, Slicing slicing = Slicing::none> struct Inputs {
     /// The depth slices. Temporary Slices are copied; other Slices must live until the Binner's call returns.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
-    /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty.
-    std::conditional_t<reads_bounds, ZBounds, detail::NotRead> bounds =
+    /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty. With clusters they
+    /// may be left out; the cells whose slice does not meet their tile's bounds then list no light.
+    std::conditional_t<reads_bounds || slicing == Slicing::clusters, ZBounds, detail::NotRead> bounds =
         detail::bounds_left_out<reads_bounds>();
 };
 
@@ -77,10 +78,11 @@ public:
     /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere, Spot or Box
     ///          in view space; or lights(...), which joins several of these
     /// inputs   {.slices = ...} with clusters or z_bins, {.bounds = ...} with a depth test unless with clusters, and
-    ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
+    ///          {.slices = ..., .bounds = ...} with z_bins and a depth test, or with clusters; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell.
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell; with
+    /// clusters and Z bounds, in each slice that meets the tile's bounds.
     /// Errors: more lights than Id can number, or than 2^30; more than 2^32 - 1 cells, pairs of a light and a slice, or
     /// tiles in all lights' rectangles; a world_space() matrix that is not affine; Z bounds shorter than
     /// view.tile_count().

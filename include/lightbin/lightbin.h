@@ -441,7 +441,7 @@ typedef enum lightbin_ids {
 /* How slices narrow the lights of a tile by depth. */
 typedef enum lightbin_slicing {
     LIGHTBIN_NO_SLICING = 0,
-    LIGHTBIN_CLUSTERS = 1, /* each tile has one list for each slice; no Z bounds are read */
+    LIGHTBIN_CLUSTERS = 1, /* each tile has one list for each slice */
     /* Each tile has one list, whose ids are ranks: places of the lights in order of depth. Each slice is a bin that has
      * the least and greatest rank of its lights, and a shader reads the part of the list between them. */
     LIGHTBIN_Z_BINS = 2
@@ -468,8 +468,9 @@ typedef struct lightbin_binner lightbin_binner;
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options, lightbin_binner** binner);
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
 
-/* The inputs of a call beside the lights. Slices are read with CLUSTERS and Z_BINS, bounds with a depth test unless
- * with CLUSTERS. What is read must be given, and what is not read must be null. */
+/* The inputs of a call beside the lights. Slices are read with CLUSTERS and Z_BINS, bounds with a depth test. What is
+ * read must be given, and what is not read must be null. With CLUSTERS bounds may be given or not: the cells whose slice
+ * does not meet the Z bounds of their tile then list no light. */
 typedef struct lightbin_inputs {
     uint32_t size;
     uint32_t unused;

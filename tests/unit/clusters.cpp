@@ -229,3 +229,74 @@ TEST_CASE("more pairs of a light and a slice than 32 bits number are refused") {
     CHECK(grid.error().code == ErrorCode::too_many_pairs);
     CHECK(std::string(grid.error().message()).find("fewer slices") != std::string::npos);
 }
+
+namespace {
+
+/// Lists in the cells whose slice does not meet its tile's Z bounds are empty, and the others as without bounds. Counts
+/// the cells with lights that are kept, and that are emptied.
+template <Options options, class Lights>
+void check_bounded(const View& view, const Lights& lights, const Slices& slices, const ZBounds& bounds,
+                   std::size_t& kept, std::size_t& emptied) {
+    Binner<options> whole, bounded;
+    const auto expected = test::to_lists(*whole.bin(view, lights, {.slices = slices}));
+    const std::size_t tiles = view.tile_count();
+    for (const Isa isa : test::machine_tiers()) {
+        Binner<options> binner(isa);
+        const auto run = [](std::size_t count, const auto& body) {
+            for (std::size_t i = count; i-- > 0;)
+                body(i);
+        };
+        const auto lists = test::to_lists(*binner.bin(view, lights, {.slices = slices, .bounds = bounds}));
+        CHECK(lists == test::to_lists(*bounded.bin(view, lights, {.slices = slices, .bounds = bounds}, Parallel(3, run))));
+        REQUIRE(lists.size() == expected.size());
+        for (std::size_t cell = 0; cell < lists.size(); ++cell) {
+            const std::size_t tile = cell % tiles, slice = cell / tiles;
+            const float min = bounds.min.empty() ? -endless : bounds.min[tile],
+                        max = bounds.max.empty() ? endless : bounds.max[tile],
+                        from = slice == 0 ? -endless : slices.boundaries()[slice - 1],
+                        to = slice == slices.boundaries().size() ? endless : slices.boundaries()[slice];
+            const bool drawn = !(min > max) && !(min > to) && !(max < from);
+            const bool as_it_should = drawn ? lists[cell] == expected[cell] : lists[cell].empty();
+            if (!as_it_should) CHECK(as_it_should);
+            (drawn ? kept : emptied) += !expected[cell].empty();
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("with Z bounds, the cells of clusters that nothing is drawn in list no light") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> depth(1, 90);
+    std::size_t kept = 0, emptied = 0;
+    for (const View& view : {test::view({500, 330}, 16), test::view({1000, 700}, 64), test::cameras(24)[3]}) {
+        std::vector<float> min, max;
+        for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+            min.push_back(tile % 97 == 0 ? -endless : depth(random));
+            max.push_back(tile % 89 == 0 ? endless : tile % 3 == 0 ? depth(random) : min.back() * 1.2f);
+            if (tile % 101 == 0) (tile % 2 == 0 ? min : max).back() = std::numeric_limits<float>::quiet_NaN();
+        }
+        const Slices slices = *Slices::exponential(20, 2, 80);
+        for (const ZBounds& bounds : {ZBounds{min, max}, ZBounds{min, {}}, ZBounds{{}, max}})
+            for (const std::size_t count : {std::size_t{1}, std::size_t{40}, std::size_t{900}}) {
+                const auto spheres = test::random_lights(count, 7);
+                check_bounded<Options{.slicing = Slicing::clusters}>(view, spheres, slices, bounds, kept, emptied);
+                check_bounded<Options{.ids = IdWidth::u16, .depth_test = true, .slicing = Slicing::clusters}>(
+                    view, spheres, slices, bounds, kept, emptied);
+            }
+        const auto spheres = test::random_lights(300, 9);
+        std::vector<Spot> spots;
+        for (const glm::vec4& sphere : spheres)
+            spots.push_back({sphere.x, sphere.y, sphere.z, sphere.w, 0.3f, -1, 0.2f, 0.7f});
+        check_bounded<Options{.depth_test = true, .slicing = Slicing::clusters}>(view, lights(spheres, spots), slices,
+                                                                                 {min, max}, kept, emptied);
+    }
+    CHECK(kept > 0);
+    CHECK(emptied > 0);
+    Binner<Options{.slicing = Slicing::clusters}> binner;
+    const std::vector<float> few(3);
+    const auto grid = binner.bin(test::view({100, 100}, 10), test::random_lights(9, 1),
+                                 {.slices = *Slices::linear(4, 0, 9), .bounds = {few, few}});
+    REQUIRE(!grid);
+    CHECK(grid.error().code == ErrorCode::z_bounds_too_small);
+}

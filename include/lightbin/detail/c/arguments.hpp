@@ -42,8 +42,8 @@ inline constexpr const char* sentences[] = {
     "a light's floats are {needed} bytes, and the stride from one light to the next is {available}",
     "this binner slices depth: give the input `slices`",
     "this binner's depth test needs Z bounds: give the input `bounds`",
-    ("the options do not read this input: bounds want a depth test, and slices a slicing; clusters read no bounds, and "
-     "lights in view space no matrix"),
+    ("the options do not read this input: bounds want a depth test or clusters, slices a slicing, and lights "
+     "in view space no matrix"),
     "this memory holds {available} elements, and {needed} are needed",
     "this grid must be in the memory that the next view's lists are to be copied to, at its beginning",
     "this machine does not run these vectors, or the library was compiled without them",

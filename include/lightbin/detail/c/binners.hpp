@@ -111,7 +111,8 @@ inline lightbin_result read_call(bool masks, const lightbin_binner* binner, cons
     if (masks && (clusters || options.depth_test)) return refused(Error{ErrorCode::no_such_slicing_shader});
     return first_error(
         check_input(options.slicing != Slicing::none, inputs.slices, LIGHTBIN_NO_SLICES_GIVEN, "inputs.slices"),
-        check_input(options.depth_test && !clusters, inputs.bounds, LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
+        clusters ? succeeded()
+                 : check_input(options.depth_test, inputs.bounds, LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
 }
 
 }  // namespace c

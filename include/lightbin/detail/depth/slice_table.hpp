@@ -65,6 +65,18 @@ public:
     float nearer(float depth) const { return margin > 0 ? float_below(widened(depth, -margin)) : depth; }
     float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
+    /// The slices first..last.
+    struct Range {
+        std::uint32_t first, last;
+    };
+    /// Returns the slices that meet the view depths from `nearest` to `farthest`, widened by the margin.
+    Range met(float nearest, float farthest) const {
+        nearest = nearer(nearest);
+        farthest = farther(farthest);
+        return {before(buckets_.index_of(nearest), [=](float boundary) { return boundary < nearest; }),
+                before(buckets_.index_of(farthest), [=](float boundary) { return boundary <= farthest; })};
+    }
+
     /// Calls found(i, first, last) for each footprint i: its light's view depths meet the slices first..last.
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets

@@ -154,6 +154,13 @@ struct BinJob : FootprintSlice {
     const float* bounds[2];  ///< the tiles' depths ZBounds::min and max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()
     ListRange* tiles;        ///< where to write the offset and count of each tile's list, for the whole grid
+    /// With clusters and Z bounds, for each block of 8x8 tiles a bit for each tile that lists lights; null: all list them.
+    const std::uint64_t* drawn = nullptr;
+
+    /// Returns the words of the blocks in a row of tiles, or null.
+    const std::uint64_t* drawn_row(unsigned y) const {
+        return drawn == nullptr ? nullptr : drawn + y / 8 * ((static_cast<std::size_t>(camera->x.tiles) + 7) / 8);
+    }
 };
 
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.

@@ -13,8 +13,8 @@ struct NotRead {
     template <class Given> NotRead(const Given&) {
         static_assert(
             sizeof(Given) == 0,
-            "lightbin: this Binner does not read this input: bounds want an Options::depth_test, and "
-            "slices an Options::slicing; clusters read no bounds");
+            "lightbin: this Binner does not read this input: bounds want an Options::depth_test "
+            "or clusters, and slices an Options::slicing");
     }
     operator ZBounds() const { return {}; }
 };

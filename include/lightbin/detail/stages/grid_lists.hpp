@@ -2,7 +2,7 @@
 // The binning stage: makes the light grid out of footprints and Z bounds, by the method that is fastest.
 #pragma once
 
-#include <lightbin/detail/dispatch/kernels.hpp>
+#include <lightbin/detail/stages/drawn_cells.hpp>
 #include <lightbin/detail/stages/shares.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -54,14 +54,21 @@ public:
         if (const auto error = prepare(how, view, bounds, common)) return error;
         const bool clusters = how.is.slicing == Slicing::clusters;
         std::size_t slices = 1;
+        const bool bounded = common.bounds[0] != nullptr || common.bounds[1] != nullptr;
         if constexpr (How::may(&Options::slicing, Slicing::clusters))
-            if (clusters) slices = sliced.slices();
+            if (clusters) {
+                slices = sliced.slices();
+                if (bounded) drawn_.find(view, sliced.table(), bounds);
+                common.bounds[0] = common.bounds[1] = nullptr;  // boxes around cells lie between the slice's depths
+            }
         const auto job_of = [&]([[maybe_unused]] std::size_t slice) {
             BinJob job = common;
             FootprintSlice& footprints = job;
             footprints = all;
-            if constexpr (How::may(&Options::slicing, Slicing::clusters))
+            if constexpr (How::may(&Options::slicing, Slicing::clusters)) {
                 if (clusters) footprints = sliced.slice(slice);
+                if (clusters && bounded) job.drawn = drawn_.slice(slice).data();
+            }
             return job;
         };
         const std::size_t tiles = view.tile_count();
@@ -79,7 +86,13 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 BinJob job = job_of(slice);
                 job.tiles += slice * tiles;
-                const auto kernel = choose(isa, view, job.area);
+                if constexpr (How::may(&Options::slicing, Slicing::clusters))
+                    if (job.drawn != nullptr && drawn_.is_empty(slice)) {
+                        fill_empty(job.tiles, tiles, offset);
+                        continue;
+                    }
+                // Scattering would take sums over all tiles.
+                const auto kernel = choose(isa, view, job.drawn != nullptr ? ~std::uint64_t{0} : job.area);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
             return std::uint64_t{offset};
@@ -151,6 +164,7 @@ private:
     Buffer<ListRange> tiles_;
     Buffer<Id> indices_;
     Buffer<float> edges_[4];
+    DrawnCells drawn_;  ///< with clusters and Z bounds
     Buffer<Share> shares_;
     Buffer<Buffer<Id>> share_lists_;
     Buffer<std::uint64_t> row_sums_;

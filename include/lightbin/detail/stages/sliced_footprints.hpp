@@ -42,6 +42,7 @@ public:
     }
 
     std::size_t slices() const { return run_count_; }
+    const SliceTable& table() const { return *table_; }
     FootprintSlice slice(std::size_t i) const {
         const SliceRun& run = runs_.data()[i];
         return {arrays_,
