@@ -31,13 +31,19 @@ struct Built {
     std::optional<lightbin::LightMasks> masks = {};  ///< without lists
 };
 
-/// Builds lists with the depth slices that the view has for these options.
-template <lightbin::Options options, class Any>
+/// Builds lists with the depth slices that the view has for these options. Clusters get Z bounds only if `bounded`.
+template <bool bounded = false, lightbin::Options options, class Any>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const std::vector<Any>& lights,
             const lightbin::ZBounds& bounds) {
     constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
     const lightbin::Slices& slices = z_bins ? view.z_bins : view.clusters;
-    const auto grid = *binner.bin(view.view, lights, lightbin::inputs_for<options>(bounds, slices));
+    const auto inputs = [&]() -> typename lightbin::Binner<options>::Inputs {
+        if constexpr (bounded)
+            return {.slices = slices, .bounds = bounds};
+        else
+            return lightbin::inputs_for<options>(bounds, slices);
+    };
+    const auto grid = *binner.bin(view.view, lights, inputs());
     Built built = {grid.ranges(), grid.ranges().size_bytes() + grid.ids().size_bytes()};
     if constexpr (options.slicing != lightbin::Slicing::none) built.slices = &slices;
     if constexpr (options.ids == lightbin::IdWidth::u32) built.ids = grid.ids();
@@ -49,10 +55,10 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const std:
     return built;
 }
 
-template <lightbin::Options options>
+template <bool bounded = false, lightbin::Options options>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const LightSet& lights,
             const lightbin::ZBounds& bounds) {
-    return std::visit([&](const auto& any) { return build(binner, view, any, bounds); }, lights);
+    return std::visit([&](const auto& any) { return build<bounded>(binner, view, any, bounds); }, lights);
 }
 
 /// Lists of lights made from masks, as ranks in order of depth.
@@ -87,10 +93,11 @@ private:
 
 using BuildLists = std::function<Built(const TiledView&, const LightSet&)>;
 
-/// Returns a function that builds with its own Binner, and with the view's Z bounds if the options test depths.
-template <lightbin::Options options> BuildLists builder() {
+/// Returns a function that builds with its own Binner, and with the view's Z bounds if the options need them or clusters
+/// are `bounded` by them.
+template <lightbin::Options options, bool bounded = false> BuildLists builder() {
     const auto binner = std::make_shared<lightbin::Binner<options>>();
     return [=](const TiledView& view, const LightSet& lights) {
-        return build(*binner, view, lights, view.bounds());
+        return build<bounded>(*binner, view, lights, view.bounds());
     };
 }

@@ -231,7 +231,7 @@ std::string advice_of(const SceneReport& report, const PreparedView& view) {
         return std::ranges::find_if(report.results, [&](const Result& r) {
             return ours(r.way) && plan.tiled && r.way.tile_size == plan.tile_size &&
                    r.way.depth_test == plan.depth_test && r.way.slicing == plan.slicing &&
-                   r.way.masks == plan.masks;
+                   r.way.masks == plan.masks && r.way.needs_bounds == plan.has_z_bounds();
         });
     };
     std::erase_if(plans, [&](const auto& plan) { return result_of(plan) == report.results.end(); });

@@ -48,6 +48,7 @@ public:
         ways.add<box>("box");
         ways.add<Options{.slicing = Slicing::clusters}>("clusters");
         ways.add<boxes>("clusters+box");
+        ways.add<boxes, true>("clusters+box+Z");
         ways.add<Options{.slicing = Slicing::z_bins}>("z-bins");
         if (with_spots) {
             ways.add<box>("box of least spheres", true, Form::least_spheres);
@@ -61,13 +62,14 @@ public:
     }
 
 private:
-    template <lightbin::Options options>
+    template <lightbin::Options options, bool bounded = false>
     void add(const char* method, bool variant = false, Form form = Form::as_they_are) {
         constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
         for (const int tile_size : {8, 16, 32, 64})
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
                 all_.push_back({method, tile_size, options.depth_test, options.slicing,
-                                options.depth_test && !clusters, true, variant, form, builder<options>()});
+                                (options.depth_test && !clusters) || bounded, true, variant, form,
+                                builder<options, bounded>()});
     }
 
     template <lightbin::Slicing slicing> void add_masks(const char* method) {

@@ -177,7 +177,7 @@ export interface ZBounds {
     max?: FloatArray;
 }
 
-/** What the binner's options read, and no others. */
+/** What the binner's options read, and no others. Clusters may be given bounds: cells without anything in them are empty. */
 export interface Inputs {
     slices?: Slices;
     bounds?: ZBounds;
