@@ -66,6 +66,8 @@ struct CullOptions {
     bool depth_test = false;
     Slicing slicing = Slicing::none;  ///< z_bins is an error
     bool max_only = false;      ///< tests with the maximum Z bound alone, for transparent surfaces; not with clusters
+    /// With clusters: the cells whose slice does not meet their tile's Z bounds list no light. These are in `z_bounds`.
+    bool bounded = false;
     bool orthographic = false;  ///< whether the view is orthographic: View::orthographic()
 
     /// The buffers; CullBytes has their sizes. Passes use slots in turn: no pass uses two buffers that have the

@@ -828,6 +828,8 @@ typedef struct lightbin_cull_options {
     int32_t orthographic; /* that of lightbin_view_info */
     int32_t slots_given;  /* 0: bindings 0, 0, 1, 2, 2, 3, 3 and 4 of set 0 in the order below */
     lightbin_slot lights, z_bounds, scratch, slices, tiles, light_count, lists, grid;
+    /* Not 0, with clusters: the cells whose slice does not meet their tile's Z bounds list no light */
+    int32_t bounded;
 } lightbin_cull_options;
 
 /* Makes the text of one pass, a whole compute shader except for `#version`, with the buffers to bind. The name of a
@@ -888,7 +890,8 @@ typedef struct lightbin_cull_totals {
  *
  * Without clusters, the buffer `z_bounds` holds the minimum and maximum of each tile, as the shader of
  * lightbin_reduce_shader() writes them, and with a depth test behind them what lightbin_shader_edges() writes. With
- * clusters and a depth test, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges().
+ * clusters and a depth test, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges(). With
+ * `bounded` it holds these two, and behind them the minimum and maximum of each tile.
  *
  * Errors: those of lightbin_cull_shader(); LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
  * LIGHTBIN_VIEW_MATRIX_DISTORTS, it is not close enough to a rotation with a uniform scale; LIGHTBIN_TOO_MANY_SLICES,

@@ -39,7 +39,8 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullOptions& options 
 /// to_view   with options.world_space the matrix from world space to view space, else null
 ///
 /// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() (shader_reduce.hpp)
-/// writes them, and with a depth test behind them shader_edges(view).
+/// writes them, and with a depth test behind them shader_edges(view). With CullOptions::bounded it holds
+/// shader_slabs(*slices), shader_edges(view), and behind them those of each tile.
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
 /// slices; too many lights for the ids; `scratch` or the masks would have more than 2^32 - 1 words.

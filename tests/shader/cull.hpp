@@ -28,7 +28,7 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     std::vector<CullText> every;
     for (const Slicing slicing : {Slicing::none, Slicing::clusters})
         for (const bool depth_test : {false, true})
-            for (unsigned switches = 0; switches < 64; ++switches)
+            for (unsigned switches = 0; switches < 128; ++switches)
                 for (int i = 0; i <= static_cast<int>(CullPass::masks); ++i) {
                     const auto pass = static_cast<CullPass>(i);
                     CullOptions options;
@@ -41,10 +41,13 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
                     options.count_in_buffer = switches & 8;
                     options.max_only = switches & 16;
                     options.ids = switches & 32 ? IdWidth::u16 : IdWidth::u32;
+                    options.bounded = switches & 64;
                     // Options of lights change the first pass only, and the format of ids the last.
                     const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
-                                      (!depth_test && (switches & 16) != 0);
+                                      (!depth_test && (switches & 16) != 0) ||
+                                      ((slicing == Slicing::none || pass == CullPass::project ||
+                                        pass == CullPass::masks) && (switches & 64) != 0);
                     options.prefix = prefixes[switches % std::size(prefixes)];
                     if (!same && cull_shader(pass, options)) every.push_back({pass, options});
                 }

@@ -7,12 +7,13 @@
 
 #include <type_traits>
 
-/// A Binner's lists.
-template <lightbin::Options options, class Lights>
+/// Returns the lists of a Binner. Clusters get Z bounds only if `bounded`.
+template <lightbin::Options options, bool bounded = false, class Lights>
 BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::LightCounts& counts) {
     lightbin::Binner<options> binner;
-    const auto grid =
-        *binner.bin(scene.view, lights, lightbin::inputs_for<options>(scene.bounds, scene.slices));
+    typename lightbin::Binner<options>::Inputs inputs = lightbin::inputs_for<options>(scene.bounds, scene.slices);
+    if constexpr (bounded) inputs.bounds = scene.bounds;
+    const auto grid = *binner.bin(scene.view, lights, inputs);
     counts = grid.light_counts();
     const auto ranges = grid.ranges();
     const auto ids = grid.ids();
@@ -25,6 +26,7 @@ struct CullWay {
     lightbin::Slicing slicing = lightbin::Slicing::none;
     bool world_space = false;
     bool max_only = false;   // the maximum Z bounds alone
+    bool bounded = false;    // clusters of which the Z bounds leave cells empty
     float slice_margin = 0;  // of slices for readers that compute a depth's slice by a formula of their own
     constexpr lightbin::Options options() const { return {.depth_test = depth_test, .slicing = slicing}; }
 };
@@ -49,8 +51,11 @@ public:
         ways<CullWay{true, clusters, true}>(device, both_sizes);
         ways<CullWay{true, tiles, true}>(device, both_sizes);
         ways<CullWay{true, tiles, false, true}>(device, one_size);
-        ways<CullWay{true, clusters, false, false, 0x1p-5f}>(device, one_size);
-        ways<CullWay{false, clusters, false, false, 0x1p-5f}>(device, one_size);
+        ways<CullWay{true, clusters, false, false, false, 0x1p-5f}>(device, one_size);
+        ways<CullWay{false, clusters, false, false, false, 0x1p-5f}>(device, one_size);
+        ways<CullWay{true, clusters, false, false, true}>(device, both_sizes);
+        ways<CullWay{false, clusters, true, false, true}>(device, one_size);
+        ways<CullWay{false, clusters, false, false, true, 0x1p-5f}>(device, one_size);
         total_.print("all");
         return total_.cases > 0 && total_.missed == 0 && total_.wrong == 0;
     }
@@ -295,12 +300,13 @@ private:
         made.options.depth_test = way.depth_test;
         made.options.slicing = slicing;
         made.options.max_only = way.max_only;
+        made.options.bounded = way.bounded;
         made.options.world_space = way.world_space;
         made.options.ids = turn_ % 2 == 0 ? IdWidth::u16 : IdWidth::u32;
         made.options.count_in_buffer = turn_ % 3 == 0;
         made.options.count_at = static_cast<std::uint32_t>(turn_ % 5);
         if (slicing != Slicing::none) made.slices = scene.slices;
-        made.z_bounds = cull_depths(scene, bounds, way.depth_test, slicing);
+        made.z_bounds = cull_depths(scene, bounds, way.depth_test, slicing, way.bounded);
         if (way.world_space) made.to_view = to_view();
         LightCounts counts;
         const auto source = [&] {
@@ -309,13 +315,13 @@ private:
             else
                 return std::span(lights);
         }();
-        const BuiltLists expected = binned<way.options()>(scene, source, counts);
+        const BuiltLists expected = binned<way.options(), way.bounded>(scene, source, counts);
         made.room = static_cast<std::uint32_t>(2 * expected.ids.size() + 30000);
         const CulledGrid grid = make(device, made);
         CullTally tally = compare_lists(grid, expected);
         tally.add(compare_masks(made, grid, source));
         tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
-        add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) + ", camera " +
+        add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) + (way.bounded ? ", bounded, camera " : ", camera ") +
                 std::to_string(camera) + ", tile " + std::to_string(tile_size),
             tally);
     }
@@ -356,17 +362,21 @@ private:
     /// The content of the buffer `z_bounds`.
     static std::vector<float> cull_depths(const BuiltScene& scene,
                                           const std::array<std::vector<float>, 2>& bounds, bool depth_test,
-                                          lightbin::Slicing slicing) {
+                                          lightbin::Slicing slicing, bool bounded = false) {
         std::vector<float> depths;
+        const auto add_bounds = [&] {
+            for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
+                depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
+        };
         if (slicing == lightbin::Slicing::clusters)
             for (const lightbin::ShaderEdges& slab : lightbin::shader_slabs(scene.slices))
                 depths.insert(depths.end(), {slab.low, slab.high});
         else
-            for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
-                depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
-        if (depth_test)
+            add_bounds();
+        if (depth_test || bounded)
             for (const lightbin::ShaderEdges& edge : lightbin::shader_edges(scene.view))
                 depths.insert(depths.end(), {edge.low, edge.high});
+        if (bounded) add_bounds();
         return depths;
     }
 

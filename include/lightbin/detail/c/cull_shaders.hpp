@@ -19,7 +19,7 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
                              LIGHTBIN_MEMBER(prefix), LIGHTBIN_MEMBER(kind), LIGHTBIN_MEMBER(world_space),
                              LIGHTBIN_MEMBER(count_in_buffer), LIGHTBIN_MEMBER(count_at), LIGHTBIN_MEMBER(ids),
                              LIGHTBIN_MEMBER(depth_test), LIGHTBIN_MEMBER(slicing), LIGHTBIN_MEMBER(max_only),
-                             LIGHTBIN_MEMBER(orthographic));
+                             LIGHTBIN_MEMBER(orthographic), LIGHTBIN_MEMBER(bounded));
     if (result.error != LIGHTBIN_OK) return result;
     if (given.stride != 0)
         known.lights_at = {given.stride, given.centre, given.radius, given.axis, given.cosine};

@@ -43,7 +43,7 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
     writer.set({{"clusters", clusters}, {"depth_test", options.depth_test}, {"world_space", options.world_space},
                 {"spots", options.kind == CullKind::spot}, {"orthographic", options.orthographic},
                 {"max_only", options.max_only && !clusters}, {"narrow", options.ids == IdWidth::u16},
-                {"count_in_buffer", options.count_in_buffer}});
+                {"count_in_buffer", options.count_in_buffer}, {"bounded", clusters && options.bounded}});
     writer.set("totals", std::to_string(sizeof(CullTotals) / 4) + "u");
     writer.set("record_words", std::to_string(cull_record_words(options)) + "u");
     writer.set("tested", clusters ? "3u" : "2u");  // where in a record what the depth test reads begins

@@ -213,8 +213,8 @@ void $store_id(uint at, uint id) {
 
 /// Adds the pass count or fill.
 inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fill) {
-    const bool narrow = options.ids == IdWidth::u16;
-    if (options.depth_test) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    const bool narrow = options.ids == IdWidth::u16, bounded = options.bounded && options.slicing == Slicing::clusters;
+    if (options.depth_test || bounded) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
     declare_scratch(writer, options);
     if (fill) {
         writer.declare_storage("tiles", "uvec2", "writeonly", options.tiles, 8);
@@ -223,10 +223,12 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     }
     writer.add("\n");
     declare_stage(writer);
-    if (options.depth_test) {
-        add_cell_depths(writer);
-        add_cell_box(writer, options);
+    if (bounded) {
+        writer.declare_shared("drawn", 1, true);
+        writer.declare_shared("any_drawn", 1, false);
     }
+    if (options.depth_test || bounded) add_cell_depths(writer);
+    if (options.depth_test) add_cell_box(writer, options);
     add_tiles_met(writer);
     add_stage(writer);
     if (fill) {
@@ -235,6 +237,10 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     }
     writer.set("tested_record", "@totals + id * @record_words + @tested");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
+    // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as slices_of() widens
+    // lights, so that no cell of the Binner's is left out. A group of which no cell is drawn skips all lights.
+    writer.set("tile_bounds", "$depths_of($grid.z + $grid.x + $grid.y + tile.y * $grid.x + tile.x)");
+    writer.set("steps", bounded ? "steps" : "$segments.z");
     // Lights that are tested end before the depth 2^42.
     writer.set("least_depth", options.orthographic ? "-4.3980465e12" : "$planes.x");
     writer.add(R"(
@@ -267,6 +273,20 @@ void $run(uvec2 group, uint thread) {
         columns = $across($z_bounds[sides + tile.x], z);                    @if depth_test
         rows = $across($z_bounds[sides + $grid.x + tile.y], z);             @if depth_test
     }                                                                       @if depth_test
+    if (inside) {                                                           @if bounded
+        vec2 slab = $depths_of(slice);                                      @if bounded
+        vec2 seen = @tile_bounds;                                           @if bounded
+        drawn = drawn && seen.x <= seen.y;                                  @if bounded
+        drawn = drawn && seen.x - abs(seen.x) * $signs.w <= slab.y;         @if bounded
+        drawn = drawn && slab.x <= seen.y + abs(seen.y) * $signs.w;         @if bounded
+    }                                                                       @if bounded
+    if (thread == 0u) { atomicStore(&$drawn[0], 0u); }                      @if bounded
+    sync_group();                                                           @if bounded
+    if (drawn) { atomicOr(&$drawn[0], 1u); }                                @if bounded
+    sync_group();                                                           @if bounded
+    if (thread == 0u) { $any_drawn[0] = atomicLoad(&$drawn[0]); }           @if bounded
+    sync_group();                                                           @if bounded
+    uint steps = $segments.z * uniform_load(&$any_drawn[0]);                @if bounded
     uint count = 0u;                                                        @if !fill
     uint at = 0u;                                                           @if fill
     if (inside) {                                                           @if fill
@@ -277,7 +297,7 @@ void $run(uvec2 group, uint thread) {
         if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }                @if fill
         at = $sum(base, $scratch[$places.y + segment * cells + cell]);      @if fill
     }                                                                       @if fill
-    for (uint step = 0u; step < $segments.z; step += 1u) {
+    for (uint step = 0u; step < @steps; step += 1u) {
         uint first = (segment * $segments.z + step) * 32u;
         uint staged_words = $stage(first, mask_block, corner, slice, thread);
         for (uint i = 0u; i < staged_words; i += 1u) {

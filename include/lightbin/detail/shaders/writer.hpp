@@ -59,6 +59,7 @@ inline ShaderWord shader_word(std::string_view word) {
         {"subgroupMin", "WaveActiveMin", "subgroupMin"},
         {"subgroupMax", "WaveActiveMax", "subgroupMax"},
         {"subgroupOr", "WaveActiveBitOr", "subgroupOr"},
+        {"uniform_load", "", "workgroupUniformLoad"},
         {"sync_group", "GroupMemoryBarrierWithGroupSync", "workgroupBarrier"},
     };
     for (const ShaderWord& row : words)
@@ -86,7 +87,8 @@ LIGHTBIN_SMALL inline std::string translate(std::string_view glsl, bool hlsl, bo
             if (sign != '&' || word_at(glsl, at).empty()) text += sign;
             continue;
         }
-        if (word == "atomicLoad" || word == "atomicStore") {  // (&variable) or (&variable, value); only WGSL has them
+        // (&variable) or (&variable, value); only WGSL has them
+        if (word == "atomicLoad" || word == "atomicStore" || word == "uniform_load") {
             const std::size_t end = glsl.find(')', at);
             text += replaced(std::string(glsl.substr(at + 2, end - at - 2)), ", ", " = ");
             at = end + 1;
