@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Measures formulas under one condition: errors against exact bounds, tiles missed, extra tiles, times.
+// Measures formulas for the screen bounds of spheres under one condition, such as a kind of camera: errors against exact
+// bounds, tiles missed, extra tiles, times.
 #pragma once
 
 #include "../exact/screen_bounds.hpp"

@@ -18,7 +18,7 @@ enum class CullPass : std::uint8_t {
     sums,     ///< adds the counts up, over 128 cells at a time
     offsets,  ///< adds the sums up, and finds the total
     fill,     ///< writes the lists
-    masks,    ///< in place of count to fill: writes masks of the columns and rows of tiles
+    masks,    ///< writes masks of the columns and rows of tiles, in place of the passes `count` to `fill`
 };
 /// The passes that make lists.
 inline constexpr CullPass cull_passes[] = {CullPass::project, CullPass::count, CullPass::sums, CullPass::offsets,

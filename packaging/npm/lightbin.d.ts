@@ -177,7 +177,7 @@ export interface ZBounds {
     max?: FloatArray;
 }
 
-/** What the binner's options read, and no others. Clusters may be given bounds: cells without anything in them are empty. */
+/** What the binner's options read, and no others. Clusters may be given bounds: cells outside of them are empty. */
 export interface Inputs {
     slices?: Slices;
     bounds?: ZBounds;
@@ -338,6 +338,8 @@ export interface CullOptions {
     depthTest?: boolean;
     slicing?: 'no-slicing' | 'clusters';
     maxOnly?: boolean;
+    /** With clusters: cells whose slice does not meet their tile's Z bounds list no light. */
+    bounded?: boolean;
     orthographic?: boolean;
     prefix?: string;
     /** Default: the bindings 0, 0, 1, 2, 2, 3, 3 and 4 of set 0 in this order. */

@@ -214,7 +214,7 @@ void use_calls(Bytes bytes) {
     info.size = sizeof info;
     if (succeeded(lightbin_view_describe(view, &info)))
         tiles = static_cast<std::size_t>(info.tiles_x) * static_cast<std::size_t>(info.tiles_y);
-    // Some inputs begin with the shaders that make lists on the GPU.
+    // One in four of the fuzzer's inputs tries the shaders that make lists on the GPU, too.
     if (kind >= 192)
         for (int call = 0; call < 3 && !bytes.empty(); ++call)
             plan_lists_on_gpu(bytes, view, slices);

@@ -87,7 +87,8 @@ struct Question {
     bool push_constants = false;
     std::vector<ShaderSlot> slots;  ///< all slots in the options, also those that the text does not use
     std::set<ErrorCode> reasons;    ///< errors with which the options may be refused
-    std::vector<Wanted> wanted;     ///< in the order of the text, without the constants at its beginning
+    /// The resources that a shader text must declare, in its order, without the constants at its beginning
+    std::vector<Wanted> wanted;
     std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
     bool constants_in_block = false;  ///< the constants are in a block in OpenGL, too

@@ -21,8 +21,7 @@ struct Bounds {
 enum class BoundsShape {
     random,
     plane,  ///< depth grows from tile to tile, like ground seen at an angle
-    tips,   ///< the depth of a light's nearest or farthest point, give or take an ulp: minimum and
-            ///< maximum alike
+    tips,   ///< minimum and maximum at the depth of a light's nearest or farthest point, give or take an ulp
 };
 
 /// Makes depth bounds for every tile; a few are infinite, have the minimum above the maximum, or stand for an empty

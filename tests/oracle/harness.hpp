@@ -209,7 +209,7 @@ public:
         const auto outside = [](const Rational& low, const Rational& high, const Rational& c) {
             return std::max({Rational(low - c), Rational(c - high), Rational(0)});
         };
-        // Without a maximum: far beyond the sphere, a line of the cell has left it for good or never leaves it.
+        // A cell without a maximum depth gets one far beyond the sphere: behind it no line from the eye enters a sphere.
         const Depths& depths = cell.depths();
         const Rational near = grown(*depths.min, -1);
         const Rational far = grown(depths.max ? *depths.max : Rational(*depths.min + exact(FLT_MAX)), 1);
@@ -238,7 +238,7 @@ private:
     /// of 16 u (|O| + tiles) tiles (u = 2^-24, O: the image's offset), and adds as much: twice that.
     struct Side {
         std::vector<Slab> slabs, grown;
-        Rational offset_in_tiles;  ///< |offset| + number of tiles + 1
+        Rational offset_in_tiles;  ///< rounding errors are in proportion to it: |offset| + number of tiles + 1
     };
     Side side(int axis) const {
         const int tiles = axis == 0 ? oracle.tiles_x() : oracle.tiles_y();

@@ -1,5 +1,5 @@
-// The light grid: both types of ids, lengths of lists, and the view that an error recommends. tests/oracle and
-// tests/hunt test that no light is missed.
+// The light grid: both types of ids, lengths of lists, and the View that an error recommends. tests/oracle and tests/hunt
+// test that no light is missed.
 #include "scene.hpp"
 
 #include <glm/common.hpp>

@@ -180,7 +180,7 @@ inline lightbin_result read_lights(const lightbin_lights* from, CallLights& ligh
         if (result.error != LIGHTBIN_OK) return result;
         lights.to_view.emplace(matrix);
     }
-    // The engine adds the counts without a check for overflow.
+    // The binner adds the numbers of lights of all kinds without a check for overflow.
     constexpr std::uint64_t most = 0xffffffff;
     const std::uint64_t count =
         detail::sum_of_sizes(detail::sum_of_sizes(given.spheres.count, given.spots.count), boxes.count);

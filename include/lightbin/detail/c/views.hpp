@@ -61,7 +61,7 @@ inline lightbin_result read_bounds(const lightbin_z_bounds* from, const View& vi
 }
 
 #if !defined(LIGHTBIN_WITHOUT_SLICES)
-/// Makes a handle of the slices that make() returns.
+/// Makes a lightbin_slices, a handle of C, of the slices that make() returns.
 template <class Make>
 lightbin_result make_slices(float margin, const lightbin_result& checked, lightbin_slices** slices, const Make& make) {
     lightbin_result result = first_error(checked, check_pointers({{slices, "slices"}}));

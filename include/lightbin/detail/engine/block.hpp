@@ -63,7 +63,7 @@ struct Scratch {
                             std::size_t{8} * list.begin);
         return row_columns_of(list);
     }
-    /// The bytes that store_met_boxes() keeps in tile_masks.
+    /// The memory of tile_masks, in which store_met_boxes() keeps bytes: for each row of tiles one for each light.
     std::uint8_t* met_boxes() const { return reinterpret_cast<std::uint8_t*>(tile_masks.data()); }
 };
 

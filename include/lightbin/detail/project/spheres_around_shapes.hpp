@@ -84,7 +84,7 @@ inline Sphere sphere_of_corners(const Box& box) {
 }  // namespace detail
 
 /// Returns a sphere that contains all points of a Box: the Box's own sphere or, if smaller, one around the box's
-/// corners. A bad Box gives a bad Sphere, one that is switched off such a Sphere.
+/// corners. A bad Box gives a bad Sphere, and a Box that is switched off a Sphere that is.
 inline Sphere bounding_sphere(const Box& box) {
     const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
     const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);

@@ -242,9 +242,9 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     if (spots) add_spots(writer, options);
     if (sliced) add_slices(writer);
 
-    // With a depth test a record has the light's sphere, behind which `store_half_spaces` stores a spot's half spaces.
-    // A radius of -1 stands for a light that boxes don't exclude: one that counts as everywhere, or a spot that is not
-    // sound.
+    // With a depth test a light's record in `scratch` has its sphere, behind which `store_half_spaces` stores a spot's
+    // half spaces. A radius of -1 stands for a light that no cell's box excludes: one that counts as everywhere, or a
+    // spot for which `spot_at` found that the Binner may list more.
     writer.add(R"(
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {

@@ -164,7 +164,7 @@ private:
     Buffer<ListRange> tiles_;
     Buffer<Id> indices_;
     Buffer<float> edges_[4];
-    DrawnCells drawn_;  ///< with clusters and Z bounds
+    DrawnCells drawn_;  ///< the cells that list lights, if clusters are given Z bounds
     Buffer<Share> shares_;
     Buffer<Buffer<Id>> share_lists_;
     Buffer<std::uint64_t> row_sums_;
