@@ -20,8 +20,7 @@ template <class Light, class ToLight> struct Lights {
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
     static constexpr LightKind kind = kind_of<MadeBy<ToLight, Light>>;
 
-    using Made = std::conditional_t<kind == LightKind::box, Box,
-                                    std::conditional_t<kind == LightKind::spot, Spot, Sphere>>;
+    using Made = ConvertedTo<MadeBy<ToLight, Light>>;
 
     /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
     Made made(const Light& light) const { return static_cast<Made>(to_light(light)); }
@@ -114,6 +113,23 @@ template <class Range, class ViewMatrix, class ToLight = detail::AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);
     result.to_view = detail::WorldToView(detail::to_matrix(view_matrix));
+    return result;
+}
+
+/// Describes lights in a large world: no light is missed however far the eye is from the origin, and the lists are as
+/// short there as at the origin. A light's centre relative to the eye is computed in double and then turned by the view
+/// matrix in float, enlarged by a bound on the rounding error of both. The light's exact centre in view space is thus
+/// the matrix's upper left 3x3 part times (centre - eye).
+///
+/// lights       as for view_space()
+/// view_matrix  as for the other world_space(). Its translation is not read: a camera-relative one without it will do
+/// eye          the eye in world space. Must be finite
+/// to_light     returns a Placed<Sphere>, Placed<Spot> or Placed<Box>, or a light in world space. A light whose centre
+///              is farther from the eye than floats reach, 3e38 units, is bad input: see Sphere
+template <class Range, class ViewMatrix, class ToLight = detail::AsLight>
+auto world_space(Range&& lights, const ViewMatrix& view_matrix, const WorldPoint& eye, const ToLight& to_light = {}) {
+    auto result = view_space(static_cast<Range&&>(lights), detail::FromEye<ToLight>{eye, to_light});
+    result.to_view = detail::WorldToView(detail::to_matrix(view_matrix), eye);
     return result;
 }
 

@@ -65,6 +65,18 @@ struct Box {
     float taper = 1;
 };
 
+/// A point of world space, in double. See world_space() with an eye, for worlds so large that floats round too much.
+struct WorldPoint {
+    double x, y, z;
+};
+
+/// A Sphere, Spot or Box whose centres, the sphere's and the box's, are relative to a point of the world: its own
+/// position in double, with centres of 0, or the origin of its sector, with float positions.
+template <class Light> struct Placed {
+    WorldPoint origin;
+    Light light;
+};
+
 /// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to
 /// `cutoff` lux (lumen per square metre, on a surface that faces the light): sqrt(intensity / cutoff), rounded up.
 /// Light beyond this range is lost, so the cutoff is also the greatest error per light that this can cause.

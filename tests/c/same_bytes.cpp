@@ -595,6 +595,6 @@ TEST_CASE("C: shapes are the lights of C++") {
 }
 
 TEST_CASE("C: each error of the C++ side has its sentence") {
-    for (int code = LIGHTBIN_MATRIX_NOT_FINITE; code <= LIGHTBIN_SCRATCH_TOO_LARGE; ++code)
+    for (int code = LIGHTBIN_MATRIX_NOT_FINITE; code <= LIGHTBIN_EYE_NOT_FINITE; ++code)
         CHECK(text({code, 0, "", 123, 456}) == Error{static_cast<ErrorCode>(code), 123, 456}.message().c_str());
 }

@@ -48,6 +48,48 @@ inline constexpr LightKind kind_of = std::convertible_to<Made, Box>    ? LightKi
                                      : std::convertible_to<Made, Spot> ? LightKind::spot
                                                                        : LightKind::sphere;
 
+/// Sphere, Spot or Box: what objects of type Made are converted to.
+template <class Made>
+using ConvertedTo = std::conditional_t<kind_of<Made> == LightKind::box, Box,
+                                       std::conditional_t<kind_of<Made> == LightKind::spot, Spot, Sphere>>;
+
+/// Returns  origin + local - eye  as a float. It is less than 2^-24 (1 + 2^-20) of itself off the exact value: the
+/// difference of the doubles is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2).
+/// Returns +inf, which is bad input, for a NaN, and where the result is beyond the range of floats.
+inline float from_eye(double origin, float local, double eye) {
+    const double difference = origin - eye, moved = difference - origin;
+    const double rest = (origin - (difference - moved)) - (eye + moved);
+    const double sum = difference + static_cast<double>(local) + rest;
+    return abs_of(sum) <= static_cast<double>(FLT_MAX) ? static_cast<float>(sum) : infinity;
+}
+
+/// Makes lights whose centres are relative to the eye, from those that `to_light` makes in world space.
+template <class ToLight> struct FromEye {
+    WorldPoint eye;
+    ToLight to_light;
+
+    template <class Made>
+    requires std::convertible_to<const Made&, ConvertedTo<Made>>
+    auto relative(const Made& made, const WorldPoint& origin = {0, 0, 0}) const {
+        auto light = static_cast<ConvertedTo<Made>>(made);
+        const auto move = [&](float& x, float& y, float& z) {
+            x = from_eye(origin.x, x, eye.x);
+            y = from_eye(origin.y, y, eye.y);
+            z = from_eye(origin.z, z, eye.z);
+        };
+        move(light.x, light.y, light.z);
+        if constexpr (kind_of<Made> == LightKind::box) move(light.box_x, light.box_y, light.box_z);
+        return light;
+    }
+    template <class Light> auto relative(const Placed<Light>& placed) const
+        -> decltype(relative(placed.light, placed.origin)) {
+        return relative(placed.light, placed.origin);
+    }
+    template <class Element> auto operator()(const Element& element) const -> decltype(relative(to_light(element))) {
+        return relative(to_light(element));
+    }
+};
+
 /// Returns `to_light`. If it cannot make lights of type Light, that is a compile error, and a stand-in is returned so
 /// that no further errors follow.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
