@@ -60,7 +60,7 @@ inline float from_eye(double origin, float local, double eye) {
     const double difference = origin - eye, moved = difference - origin;
     const double rest = (origin - (difference - moved)) - (eye + moved);
     const double sum = difference + static_cast<double>(local) + rest;
-    return abs_of(sum) <= static_cast<double>(FLT_MAX) ? static_cast<float>(sum) : infinity;
+    return abs_of(sum) < 0x1.ffffffp127 ? static_cast<float>(sum) : infinity;  // what is nearer to FLT_MAX than 2^128
 }
 
 /// Makes lights whose centres are relative to the eye, from those that `to_light` makes in world space.
