@@ -520,10 +520,9 @@ typedef struct lightbin_grid {
  *
  * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number, or than 2^30; LIGHTBIN_TOO_MANY_ENTRIES,
  * LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 tiles in all lights' rectangles, cells, or
- * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED;
- * LIGHTBIN_STRIDE_TOO_SMALL; LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and
- * LIGHTBIN_NOT_READ, of the inputs. */
-    LIGHTBIN_EYE_NOT_FINITE = 151,
+ * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
+ * LIGHTBIN_EYE_NOT_FINITE; LIGHTBIN_STRIDE_TOO_SMALL; LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN,
+ * LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);

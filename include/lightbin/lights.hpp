@@ -20,7 +20,8 @@ template <class Light, class ToLight> struct Lights {
     /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
     static constexpr LightKind kind = kind_of<MadeBy<ToLight, Light>>;
 
-    using Made = ConvertedTo<MadeBy<ToLight, Light>>;
+    using Made = std::conditional_t<kind == LightKind::box, Box,
+                                    std::conditional_t<kind == LightKind::spot, Spot, Sphere>>;
 
     /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array.
     Made made(const Light& light) const { return static_cast<Made>(to_light(light)); }
@@ -116,18 +117,17 @@ auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& t
     return result;
 }
 
-/// Describes lights in a large world: no light is missed however far the eye is from the origin, and the lists are as
-/// short there as at the origin. A light's centre relative to the eye is computed in double and then turned by the view
-/// matrix in float, enlarged by a bound on the rounding error of both. The light's exact centre in view space is thus
-/// the matrix's upper left 3x3 part times (centre - eye).
+/// Describes lights in a large world. However far the eye is from the world's origin, no light is missed and the lists
+/// are as short as at the origin: the exact place of a centre in view space is the matrix's upper left 3x3 part times
+/// (centre - eye), where the difference is computed in double.
 ///
 /// lights       as for view_space()
-/// view_matrix  as for the other world_space(). Its translation is not read: a camera-relative one without it will do
+/// view_matrix  as for the other world_space(), but its translation is not read
 /// eye          the eye in world space. Must be finite
-/// to_light     returns a Placed<Sphere>, Placed<Spot> or Placed<Box>, or a light in world space. A light whose centre
-///              is farther from the eye than floats reach, 3e38 units, is bad input: see Sphere
-template <class Range, class ViewMatrix, class ToLight = detail::AsLight>
-auto world_space(Range&& lights, const ViewMatrix& view_matrix, const WorldPoint& eye, const ToLight& to_light = {}) {
+/// to_light     makes a Placed<Sphere>, Placed<Spot> or Placed<Box> of an element. One that is farther from the eye than
+///              floats reach, 3e38 units, is bad input: see Sphere
+template <class Range, class ViewMatrix, class ToLight>
+auto world_space(Range&& lights, const ViewMatrix& view_matrix, const WorldPoint& eye, const ToLight& to_light) {
     auto result = view_space(static_cast<Range&&>(lights), detail::FromEye<ToLight>{eye, to_light});
     result.to_view = detail::WorldToView(detail::to_matrix(view_matrix), eye);
     return result;

@@ -65,13 +65,13 @@ struct Box {
     float taper = 1;
 };
 
-/// A point of world space, in double. See world_space() with an eye, for worlds so large that floats round too much.
+/// A point of world space.
 struct WorldPoint {
     double x, y, z;
 };
 
-/// A Sphere, Spot or Box whose centres, the sphere's and the box's, are relative to a point of the world: its own
-/// position in double, with centres of 0, or the origin of its sector, with float positions.
+/// A Sphere, Spot or Box in a large world, whose centres, the sphere's and the box's, are relative to `origin`. That is
+/// the light's own position, with centres of 0, or a sector's origin. world_space() with an eye takes these.
 template <class Light> struct Placed {
     WorldPoint origin;
     Light light;

@@ -301,8 +301,10 @@ class Core {
                     + 'there are so many lights, give count');
             }
             // The bytes of doubles are copied as those of twice as many floats.
-            if (wide && end > 0) this.stage(new Float32Array(from.buffer, from.byteOffset, 2 * end), name, at, 0, 2 * end);
-            else this.stage(from, name, at, offset, end);
+            if (wide && end > 0)
+                this.stage(new Float32Array(from.buffer, from.byteOffset, 2 * end), name, at, 0, 2 * end);
+            else
+                this.stage(from, name, at, offset, end);
             heap.setUint32(at + 4, (wide ? 8 : 4) * step, true);
         }
     }

@@ -51,7 +51,8 @@ test_both('lists far from the origin are those at the origin', async lightbin =>
     for (const kinds of [centre => ({spheres: {centre, radius}}),
                          centre => ({boxes: {boxCentre: centre, halfAxes}}),
                          centre => ({boxes: {boxCentre: centre, halfAxes, centre, radius}})]) {
-        const lights = {viewMatrix: identity, ...kinds(Float32Array.from(near))}, lists = lists_of(binner.bin(view, lights));
+        const lights = {viewMatrix: identity, ...kinds(Float32Array.from(near))};
+        const lists = lists_of(binner.bin(view, lights));
         assert.ok(lists.flat().length > 400, String(lists.flat().length));
         for (const distance of [0, 1e5, 1e7, 1e9, 2 ** 40]) {
             const eye = [distance, -3.25, distance / 2], far = near.map((number, i) => number + eye[i % 3]);

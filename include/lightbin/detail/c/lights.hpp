@@ -105,13 +105,12 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
             c::for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& doubles) {
                 constexpr const c::Member<Given>& member = c::Kind<Given>::members[m];
                 if constexpr (member.is_point) {
-                    double point[3];
-                    float relative[3];
-                    std::memcpy(point, static_cast<const char*>(doubles.first) + (first + i) * doubles.stride,
-                                sizeof point);
-                    for (int k = 0; k < 3; ++k)
-                        relative[k] = from_eye(point[k], 0, eye[k]);
-                    std::memcpy(reinterpret_cast<char*>(to + i) + member.offset, relative, sizeof relative);
+                    WorldPoint origin;
+                    std::memcpy(&origin, static_cast<const char*>(doubles.first) + (first + i) * doubles.stride,
+                                sizeof origin);
+                    float* const centre = &to[i].x + member.offset / sizeof(float);
+                    centre[0] = centre[1] = centre[2] = 0;
+                    move_from_eye(origin, {eye[0], eye[1], eye[2]}, centre[0], centre[1], centre[2]);
                 }
             });
     }

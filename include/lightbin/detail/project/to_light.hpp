@@ -38,6 +38,35 @@ struct AsLight {
     }
 };
 
+/// Adds  origin - eye  to a float coordinate. The result is less than 2^-24 (1 + 2^-20) of itself off the exact sum, as
+/// the difference is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2). It is +inf,
+/// which is bad input, for a NaN, and where the sum is beyond the range of floats.
+inline void move_from_eye(double origin, double eye, float& coordinate) {
+    const double difference = origin - eye, moved = difference - origin;
+    const double rest = (origin - (difference - moved)) - (eye + moved);
+    const double sum = difference + static_cast<double>(coordinate) + rest;
+    coordinate = abs_of(sum) < 0x1.ffffffp127 ? static_cast<float>(sum) : infinity;  // below, FLT_MAX is the nearest
+}
+inline void move_from_eye(const WorldPoint& origin, const WorldPoint& eye, float& x, float& y, float& z) {
+    move_from_eye(origin.x, eye.x, x);
+    move_from_eye(origin.y, eye.y, y);
+    move_from_eye(origin.z, eye.z, z);
+}
+
+/// Makes lights whose centres are relative to the eye, from the Placed ones that `to_light` makes.
+template <class ToLight> struct FromEye {
+    WorldPoint eye;
+    ToLight to_light;
+
+    template <class Element> auto operator()(const Element& element) const -> decltype(to_light(element).light) {
+        auto [origin, light] = to_light(element);
+        move_from_eye(origin, eye, light.x, light.y, light.z);
+        if constexpr (std::convertible_to<decltype(light), Box>)
+            move_from_eye(origin, eye, light.box_x, light.box_y, light.box_z);
+        return light;
+    }
+};
+
 /// What `to_light`, as const, returns for an array element.
 template <class ToLight, class Light>
 using MadeBy = decltype(std::declval<const ToLight&>()(std::declval<const Light&>()));
@@ -47,48 +76,6 @@ template <class Made>
 inline constexpr LightKind kind_of = std::convertible_to<Made, Box>    ? LightKind::box
                                      : std::convertible_to<Made, Spot> ? LightKind::spot
                                                                        : LightKind::sphere;
-
-/// Sphere, Spot or Box: what objects of type Made are converted to.
-template <class Made>
-using ConvertedTo = std::conditional_t<kind_of<Made> == LightKind::box, Box,
-                                       std::conditional_t<kind_of<Made> == LightKind::spot, Spot, Sphere>>;
-
-/// Returns  origin + local - eye  as a float. It is less than 2^-24 (1 + 2^-20) of itself off the exact value: the
-/// difference of the doubles is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2).
-/// Returns +inf, which is bad input, for a NaN, and where the result is beyond the range of floats.
-inline float from_eye(double origin, float local, double eye) {
-    const double difference = origin - eye, moved = difference - origin;
-    const double rest = (origin - (difference - moved)) - (eye + moved);
-    const double sum = difference + static_cast<double>(local) + rest;
-    return abs_of(sum) < 0x1.ffffffp127 ? static_cast<float>(sum) : infinity;  // what is nearer to FLT_MAX than 2^128
-}
-
-/// Makes lights whose centres are relative to the eye, from those that `to_light` makes in world space.
-template <class ToLight> struct FromEye {
-    WorldPoint eye;
-    ToLight to_light;
-
-    template <class Made>
-    requires std::convertible_to<const Made&, ConvertedTo<Made>>
-    auto relative(const Made& made, const WorldPoint& origin = {0, 0, 0}) const {
-        auto light = static_cast<ConvertedTo<Made>>(made);
-        const auto move = [&](float& x, float& y, float& z) {
-            x = from_eye(origin.x, x, eye.x);
-            y = from_eye(origin.y, y, eye.y);
-            z = from_eye(origin.z, z, eye.z);
-        };
-        move(light.x, light.y, light.z);
-        if constexpr (kind_of<Made> == LightKind::box) move(light.box_x, light.box_y, light.box_z);
-        return light;
-    }
-    template <class Light> auto relative(const Placed<Light>& placed) const
-        -> decltype(relative(placed.light, placed.origin)) {
-        return relative(placed.light, placed.origin);
-    }
-    template <class Element> auto operator()(const Element& element) const -> decltype(relative(to_light(element))) {
-        return relative(to_light(element));
-    }
-};
 
 /// Returns `to_light`. If it cannot make lights of type Light, that is a compile error, and a stand-in is returned so
 /// that no further errors follow.

@@ -10,8 +10,8 @@
 // most u, and three sums follow. So a centre is within 6u of the sum over j of |A_j| |p_j - o_j| of the exact one.
 // Lights that are too large, small or far away for the float path are transformed in double, one by one.
 //
-// With an eye, o and A o + t are 0 and positions are given relative to the eye, rounded to float. This rounding, of at
-// most (1 + 2^-20) u, takes the place of that of the differences. In double it is added: WorldToView::position_error().
+// With an eye, o and A o + t are 0 and positions relative to the eye were rounded to float. The error of that, at most
+// (1 + 2^-20) u, takes the place of the differences' one. In double it is added: WorldToView::position_error().
 //
 // Only a rotation with a uniform scale maps every cone to a cone. Let the factors by which A stretches lengths lie
 // between (1 - d) s and s. By the polar decomposition A = Q P, with Q orthogonal and P stretching by the same factors,
@@ -72,7 +72,7 @@ public:
         if (affine_) find_float_transform();
     }
 
-    /// The transform of positions relative to the eye, which were rounded to float, by the matrix without its translation.
+    /// The matrix without its translation, for positions relative to the eye that were rounded to float.
     WorldToView(const Matrix& matrix, const WorldPoint& eye) : WorldToView(without_translation(matrix)) {
         position_error_ = 0x1p-24 * (1 + 0x1p-20);
         eye_finite_ = is_finite(eye.x) && is_finite(eye.y) && is_finite(eye.z);
@@ -105,8 +105,8 @@ public:
             error += 0x1p-24 * abs_of(centre[row]) +
                      (0x1p-50 + position_error_) * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
-        // The sphere may be the least one around a spot, and the error that of the spot's apex, which is at most a
-        // radius away. By the Cauchy-Schwarz inequality that adds up to 3 position_error_ of the radius.
+        // The sphere may be the least one around a spot, whose apex, at most a radius off the centre, is what was
+        // rounded. By the Cauchy-Schwarz inequality that adds up to 3 position_error_ of the radius.
         const double radius =
             (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23 + 4 * position_error_) +
             static_cast<double>(FLT_MIN);
