@@ -89,7 +89,7 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
             "lightbin::Sphere, a lightbin::Spot or a lightbin::Box of a light");
     else
         static_assert(can_be_called, "lightbin: to_light is called, as const, with a const reference to one of the "
-                                     "lights, and can't be called so");
+                                     "lights, and can't be called so (with an eye, it must return a Placed light)");
     constexpr auto stand_in = [](const Light&) { return Sphere(); };
     if constexpr (can_be_called) {
         using Made = MadeBy<ToLight, Light>;
