@@ -70,6 +70,8 @@ enum class ErrorCode : std::uint8_t {
     too_many_slices,
     view_matrix_distorts,
     scratch_too_large,
+    // lights relative to an eye
+    eye_not_finite,
 };
 
 namespace detail {
@@ -156,15 +158,16 @@ inline constexpr const char* error_sentences[] = {
      "transform the lights to view space before they are culled"),
     ("the passes would need {needed} bytes of scratch memory, and their 32-bit indices reach {available}: use larger "
      "tiles, fewer slices or fewer lights"),
+    "the eye, in world space, must be three finite numbers, and one is NaN or infinite",
 };
-static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) - 99);
+static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::eye_not_finite) - 99);
 
 }  // namespace detail
 
 /// Returns one English sentence that names the cause and a remedy. Placeholders {needed}, {available} and {given}
 /// stand for the numbers of an Error, which Error::message() fills in; {given} is Error::needed as a signed number.
 constexpr const char* to_string(ErrorCode code) {
-    return code >= ErrorCode::matrix_not_finite && code <= ErrorCode::scratch_too_large
+    return code >= ErrorCode::matrix_not_finite && code <= ErrorCode::eye_not_finite
                ? detail::error_sentences[static_cast<int>(code) - 100]
                : "unknown error";
 }

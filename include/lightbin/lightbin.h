@@ -140,6 +140,7 @@ typedef enum lightbin_error {
     LIGHTBIN_TOO_MANY_SLICES = 148,
     LIGHTBIN_VIEW_MATRIX_DISTORTS = 149,
     LIGHTBIN_SCRATCH_TOO_LARGE = 150,
+    LIGHTBIN_EYE_NOT_FINITE = 151,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -346,6 +347,10 @@ typedef struct lightbin_lights {
     lightbin_spheres spheres;
     lightbin_spots spots;
     lightbin_boxes boxes;
+    /* For worlds so large that floats round too much: the eye in world space, 3 doubles. Each `centre` and `box_centre`
+     * is then 3 doubles in place of 3 floats, and of the view matrix, which must be given, the translation is not read.
+     * Centres relative to the eye are computed in double. May be null. */
+    const double* eye;
 } lightbin_lights;
 
 /* ---- Slices ---- */
@@ -516,9 +521,9 @@ typedef struct lightbin_grid {
  *
  * Errors: LIGHTBIN_TOO_MANY_LIGHTS, more than the ids can number, or than 2^30; LIGHTBIN_TOO_MANY_ENTRIES,
  * LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_PAIRS, more than 2^32 - 1 tiles in all lights' rectangles, cells, or
- * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE and LIGHTBIN_VIEW_MATRIX_TRANSPOSED;
- * LIGHTBIN_STRIDE_TOO_SMALL; LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN, LIGHTBIN_Z_BOUNDS_TOO_SMALL and
- * LIGHTBIN_NOT_READ, of the inputs. */
+ * pairs of a light and a slice; LIGHTBIN_VIEW_MATRIX_NOT_AFFINE, LIGHTBIN_VIEW_MATRIX_TRANSPOSED and
+ * LIGHTBIN_EYE_NOT_FINITE; LIGHTBIN_STRIDE_TOO_SMALL; LIGHTBIN_NO_SLICES_GIVEN, LIGHTBIN_NO_BOUNDS_GIVEN,
+ * LIGHTBIN_Z_BOUNDS_TOO_SMALL and LIGHTBIN_NOT_READ, of the inputs. */
 LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
                                           lightbin_grid* grid);

@@ -117,6 +117,22 @@ auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& t
     return result;
 }
 
+/// Describes lights in a large world. However far the eye is from the world's origin, no light is missed and the lists
+/// are as short as at the origin: the exact place of a centre in view space is the matrix's upper left 3x3 part times
+/// (centre - eye), where the difference is computed in double.
+///
+/// lights       as for view_space()
+/// view_matrix  as for the other world_space(), but its translation is not read
+/// eye          the eye in world space. Must be finite
+/// to_light     makes a Placed<Sphere>, Placed<Spot> or Placed<Box> of an element. One that is farther from the eye than
+///              floats reach, 3e38 units, is bad input: see Sphere
+template <class Range, class ViewMatrix, class ToLight>
+auto world_space(Range&& lights, const ViewMatrix& view_matrix, const WorldPoint& eye, const ToLight& to_light) {
+    auto result = view_space(static_cast<Range&&>(lights), detail::FromEye<ToLight>{eye, to_light});
+    result.to_view = detail::WorldToView(detail::to_matrix(view_matrix), eye);
+    return result;
+}
+
 namespace detail {
 
 /// What lights() returns: several arrays of lights, each of another kind.

@@ -65,6 +65,18 @@ struct Box {
     float taper = 1;
 };
 
+/// A point of world space.
+struct WorldPoint {
+    double x, y, z;
+};
+
+/// A Sphere, Spot or Box in a large world, whose centres, the sphere's and the box's, are relative to `origin`. That is
+/// the light's own position, with centres of 0, or a sector's origin. world_space() with an eye takes these.
+template <class Light> struct Placed {
+    WorldPoint origin;
+    Light light;
+};
+
 /// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to
 /// `cutoff` lux (lumen per square metre, on a surface that faces the light): sqrt(intensity / cutoff), rounded up.
 /// Light beyond this range is lost, so the cutoff is also the greatest error per light that this can cause.

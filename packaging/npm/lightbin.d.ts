@@ -145,6 +145,11 @@ export interface Lights {
     viewMatrix?: Numbers | null;
     /** Of viewMatrix. */
     layout?: MatrixLayout;
+    /**
+     * For worlds so large that floats round too much: the eye in world space. Each centre and boxCentre is then a
+     * Float64Array, and the translation of viewMatrix is not read. Centres relative to the eye are computed in double.
+     */
+    eye?: Numbers | null;
     spheres?: Spheres | null;
     spots?: Spots | null;
     boxes?: Boxes | null;

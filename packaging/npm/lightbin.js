@@ -86,7 +86,7 @@ const kinds = {
     spots: {stride: 8, attributes: {centre: [3, 0], radius: [1, 3], axis: [3, 4], cosine: [1, 7]}},
     boxes: {stride: 16, attributes: {centre: [3, 0], radius: [1, 3], boxCentre: [3, 4], halfAxes: [9, 7], taper: [1]}},
 };
-const light_names = ['viewMatrix', 'layout', ...Object.keys(kinds)];
+const light_names = ['viewMatrix', 'layout', 'eye', ...Object.keys(kinds)];
 for (const kind of Object.values(kinds)) kind.names = ['count', 'array', 'stride', ...Object.keys(kind.attributes)];
 
 /// The module's functions and memory.
@@ -253,16 +253,20 @@ class Core {
     matrix(numbers, layout, what) { return {doubles: this.doubles(numbers, 16, what), layout}; }
 
     lights(given, what = 'lights') {
-        const {viewMatrix, layout} = only(given, light_names, what);
-        const at = this.place('lights', viewMatrix == null ? {} : {viewMatrix: this.matrix(viewMatrix, layout,
-            `${what}.viewMatrix`)});
+        const {viewMatrix, layout, eye} = only(given, light_names, what);
+        const at = this.place('lights', {
+            viewMatrix: viewMatrix == null ? undefined : this.matrix(viewMatrix, layout, `${what}.viewMatrix`),
+            eye: eye == null ? 0 : this.doubles(eye, 3, `${what}.eye`),
+        });
         for (const kind in kinds)
             if (given[kind] != null)
-                this.kind(kind, given[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
+                this.kind(kind, given[kind], at + structs.lights.members[kind][1], `${what}.${kind}`,
+                    eye == null ? [] : ['centre', 'boxCentre']);
         return at;
     }
 
-    kind(kind, given, to, what) {
+    /// in_double  the attributes that must be Float64Arrays
+    kind(kind, given, to, what, in_double) {
         const {attributes, stride: usual, names: known} = kinds[kind], {members} = structs[kind];
         only(given, known, what);
         const {array: shared, stride = usual} = given, heap = this.heap();
@@ -275,6 +279,9 @@ class Core {
             const [floats, usual_offset] = attributes[key];
             const value = given[key] === undefined && shared !== undefined ? usual_offset : given[key];
             if (value == null) continue;
+            const wide = in_double.includes(key);
+            if (wide && !(value instanceof Float64Array))
+                refuse(`${what}.${key}: with an eye it must be a Float64Array of three numbers a light`);
             const by_offset = typeof value === 'number', from = by_offset ? shared : value;
             const offset = by_offset ? value : 0, step = by_offset ? stride : floats;
             if (!(Number.isInteger(offset) && offset >= 0 && is_array(from)))
@@ -293,8 +300,12 @@ class Core {
                 refuse(`${name}: the array has ${from.length} floats, and ${count} lights have ${count * step}; if `
                     + 'there are so many lights, give count');
             }
-            this.stage(from, name, at, offset, end);
-            heap.setUint32(at + 4, 4 * step, true);
+            // The bytes of doubles are copied as those of twice as many floats.
+            if (wide && end > 0)
+                this.stage(new Float32Array(from.buffer, from.byteOffset, 2 * end), name, at, 0, 2 * end);
+            else
+                this.stage(from, name, at, offset, end);
+            heap.setUint32(at + 4, (wide ? 8 : 4) * step, true);
         }
     }
 

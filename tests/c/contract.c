@@ -272,8 +272,10 @@ static void test_binners(void) {
     uint32_t* ids;
     lightbin_range ranges[tile_count];
     float not_affine[16];
+    double eye[3];
     CLEAR(inputs);
     memset(not_affine, 0, sizeof not_affine);
+    memset(eye, 0xff, sizeof eye); /* three NaNs */
 
     NEEDS(lightbin_binner_create(NULL, NULL), "binner");
     options.ids = LIGHTBIN_U8;
@@ -318,6 +320,15 @@ static void test_binners(void) {
     lights.view_matrix.floats = not_affine;
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_VIEW_MATRIX_NOT_AFFINE);
     CHECK(grid.ranges == NULL);
+    lights.eye = eye;
+    lights.view_matrix.floats = NULL;
+    NEEDS(lightbin_bin(binner, view, &lights, NULL, &grid), "lights.view_matrix");
+    lights.view_matrix.floats = projection;
+    lights.spots.centre.stride = 23;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_STRIDE_TOO_SMALL,
+                  "lights.spots.centre"));
+    lights.spheres.count = lights.spots.count = 0;
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_EYE_NOT_FINITE);
     lights = lights_given();
     inputs.slices = slices;
     CHECK(refuses(lightbin_bin(binner, view, &lights, &inputs, &grid), LIGHTBIN_NOT_READ, "inputs.slices"));

@@ -359,6 +359,51 @@ TEST_CASE("C: lights may lie in memory as the engine has them, nearly so, or in 
     lists_are(scene.boxes, lights);
 }
 
+TEST_CASE("C: with an eye, centres are doubles at any address") {
+    const double eye[] = {1e9 + 0.37, 61.62, -5e8 + 0.11};
+    const std::size_t stride = 3 * sizeof(double) + 1;
+    std::vector<char> bytes(2 * count * stride);  // centres of balls, then centres of boxes
+    std::vector<Placed<Sphere>> spheres;
+    std::vector<Placed<Spot>> spots;
+    std::vector<Placed<Box>> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
+        Spot spot = scene.spots[i];
+        Box box = scene.boxes[i];
+        double at[] = {eye[0] + static_cast<double>(spot.x), eye[1] + static_cast<double>(spot.y),
+                       eye[2] + static_cast<double>(spot.z)};
+        std::memcpy(&bytes[i * stride], at, sizeof at);
+        spot.x = spot.y = spot.z = box.x = box.y = box.z = 0;
+        box.box_x = 0.5f, box.box_y = -1, box.box_z = 0.25f;
+        spots.push_back({{at[0], at[1], at[2]}, spot});
+        spheres.push_back({{at[0], at[1], at[2]}, {0, 0, 0, spot.radius}});
+        boxes.push_back({{at[0], at[1], at[2]}, box});
+        at[0] += 0.5, at[1] -= 1, at[2] += 0.25;
+        std::memcpy(&bytes[(count + i) * stride], at, sizeof at);
+    }
+    const auto in = [](const auto& first, std::size_t step) { return lightbin_floats{&first, step}; };
+    const lightbin_floats centres = in(bytes[0], stride), box_centres = in(bytes[count * stride], stride);
+    auto lights = sized<lightbin_lights>();
+    lights.view_matrix.floats = view_matrix;
+    lights.eye = eye;
+    lights.spheres = {count, centres, in(spots[0].light.radius, sizeof spots[0])};
+    lights.spots = {count, centres, in(spots[0].light.radius, sizeof spots[0]),
+                    in(spots[0].light.axis_x, sizeof spots[0]), in(spots[0].light.cos_half_angle, sizeof spots[0])};
+    lights.boxes = {count, centres, in(boxes[0].light.radius, sizeof boxes[0]), box_centres,
+                    in(boxes[0].light.half_axes, sizeof boxes[0]), in(boxes[0].light.taper, sizeof boxes[0])};
+    const auto far = [&](const auto& placed) {
+        return world_space(placed, matrix(view_matrix, MatrixLayout::column_major), {eye[0], eye[1], eye[2]},
+                           [](const auto& light) { return light; });
+    };
+    Binner<> expected;
+    const auto cpp_grid = *expected.bin(cpp_view, lightbin::lights(far(spheres), far(spots), far(boxes)));
+    CHECK(cpp_grid.ids().size() > 1000);
+    const auto view = make_view();
+    const auto binner = make_binner();
+    auto grid = sized<lightbin_grid>();
+    works(lightbin_bin(binner.get(), view.get(), &lights, nullptr, &grid));
+    compare(cpp_grid, grid);
+}
+
 TEST_CASE("C: depth buffers are reduced as in C++") {
     const auto view = make_view();
     std::vector<float> depth(640 * 360 * 2), min(tiles), max(tiles), cpp_min(tiles), cpp_max(tiles);
@@ -602,6 +647,6 @@ TEST_CASE("C: shapes are the lights of C++") {
 }
 
 TEST_CASE("C: each error of the C++ side has its sentence") {
-    for (int code = LIGHTBIN_MATRIX_NOT_FINITE; code <= LIGHTBIN_SCRATCH_TOO_LARGE; ++code)
+    for (int code = LIGHTBIN_MATRIX_NOT_FINITE; code <= LIGHTBIN_EYE_NOT_FINITE; ++code)
         CHECK(text({code, 0, "", 123, 456}) == Error{static_cast<ErrorCode>(code), 123, 456}.message().c_str());
 }

@@ -130,6 +130,9 @@ void mistake() {
     [[maybe_unused]] const lightbin::Sphere sphere = lightbin::Spot();
 #elif MISTAKE == 37  // conver(t|sion).*Box.*Sphere
     [[maybe_unused]] const lightbin::Sphere sphere = lightbin::Box();
+#elif MISTAKE == 38  // with an eye, it must return a Placed light
+    const auto to_sphere = [](const Lamp&) { return lightbin::Sphere(); };
+    (void)binner.bin(*view, lightbin::world_space(lamps, projection, {0, 0, 0}, to_sphere));
 #endif
 }
 

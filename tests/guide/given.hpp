@@ -27,6 +27,11 @@ struct Lamp {
     std::uint32_t mask;
 };
 
+struct StreetLamp {
+    glm::dvec3 position;
+    float range;
+};
+
 struct Camera {
     glm::mat4 projection, world_to_view;
     lightbin::ImageSize size;
@@ -59,6 +64,8 @@ extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> grid;
 extern lightbin::Binner<> binner;
 extern const std::vector<glm::vec4> spheres;
 extern const std::vector<Lamp> lamps;
+extern const std::vector<StreetLamp> street_lamps;
+extern const glm::dvec3 eye_position;
 extern const std::vector<Decal> decals;
 struct Eye {
     lightbin::View view;

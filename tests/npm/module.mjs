@@ -41,6 +41,30 @@ const test_both = (name, body) => test(name, async () => {
 
 const bytes_of = array => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
 
+test_both('lists far from the origin are those at the origin', async lightbin => {
+    const view = lightbin.view(square), binner = lightbin.binner(), viewMatrix = identity.with(12, 1e30);
+    const round = number => Math.round(8 * number) / 8;  // what can be added to these eyes without rounding
+    const radius = Float32Array.from({length: 200}, () => random(0.1, 4));
+    const near = Float64Array.from({length: 600}, (_, i) => round(i % 3 === 2 ? random(-60, 2) : random(-40, 40)));
+    const halfAxes = Float32Array.from({length: 1800}, () => random(-2, 2));
+    const memory = lightbin.floats(3600);  // doubles in the module's memory are read in place
+    for (const kinds of [centre => ({spheres: {centre, radius}}),
+                         centre => ({boxes: {boxCentre: centre, halfAxes}}),
+                         centre => ({boxes: {boxCentre: centre, halfAxes, centre, radius}})]) {
+        const lights = {viewMatrix: identity, ...kinds(Float32Array.from(near))};
+        const lists = lists_of(binner.bin(view, lights));
+        assert.ok(lists.flat().length > 400, String(lists.flat().length));
+        for (const distance of [0, 1e5, 1e7, 1e9, 2 ** 40]) {
+            const eye = [distance, -3.25, distance / 2], far = near.map((number, i) => number + eye[i % 3]);
+            const own = new Float64Array(memory.array.buffer, memory.array.byteOffset, far.length);
+            own.set(far);
+            for (const centre of [far, own])
+                assert.deepEqual(lists_of(binner.bin(view, {viewMatrix, eye, ...kinds(centre)})), lists);
+        }
+    }
+    return [view, binner, memory];
+});
+
 test_both('both modules make the bytes of this machine\'s library', async lightbin => {
     const file = fs.readFileSync(lists);
     let at = 0;
@@ -290,7 +314,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => lightbin.floats(1.5), /^length: /],
             [() => binner.bin(new Proxy(view, {}), lights), /^view was not made by this module$/],
             [() => binner.bin(strange, lights), /^view was not made by this module$/],
-            [() => binner.bin(view), /^lights must be an object of viewMatrix, layout, spheres/],
+            [() => binner.bin(view), /^lights must be an object of viewMatrix, layout, eye, spheres/],
             [() => binner.bin(view, {balls: {}}), /there is no 'balls'/],
             [() => binner.bin(view, lights, {slice: slices}), /there is no 'slice'/],
             [() => sliced.bin(view, lights, {slices: view}), /^inputs.slices was not made/],
@@ -316,6 +340,10 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [binned({array: spheres.buffer}), /^lights.spheres.array must be an array of floats$/],
             [binned({array: 80, count: 1}), /^lights.spheres.array must be/],
             [binned({array: detached}), /can't be copied.*read it anew/],
+            ...[{array: spheres}, {centre: [0, 0, -5], radius: [2]}].map(spheres => [
+                () => binner.bin(view, {viewMatrix: identity, eye: [0, 0, 0], spheres}),
+                /^lights.spheres.centre: with an eye it must be a Float64Array of three numbers a light$/]),
+            [() => binner.bin(view, {...lights, eye: [0, 0]}), /^lights.eye must be an array of 3/],
             [() => binner.bin(view, lights).encode({encoding: 'sentinel', capacity: -1}),
                 /^format.capacity: -1 is no whole number from 0 to 4294967295$/],
         ];
@@ -325,6 +353,8 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             ['viewport-out-of-range', viewed({width: 50000}), /50000/],
             ['matrix-not-finite', viewed({projection: identity.map(() => NaN)}), /./],
             ['view-matrix-not-affine', () => binner.bin(view, {...lights, viewMatrix: square.projection}), /./],
+            ['eye-not-finite', () => binner.bin(view, {viewMatrix: identity, eye: [0, NaN, 0]}), /^the eye, in world/],
+            ['null-argument', () => binner.bin(view, {eye: [0, 0, 0]}), /^lights.view_matrix: /],
             ['no-slices', () => lightbin.linearSlices({count: 0, begin: 1, end: 2}), /./],
             ['slices-do-not-ascend', () => lightbin.slicesFromBoundaries({boundaries: [3, 2]}), /./],
             ['not-read', () => binner.bin(view, lights, {slices}), /^inputs.slices: /],

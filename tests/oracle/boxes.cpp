@@ -73,7 +73,7 @@ struct Boxes {
         Shapes(Examiner& examiner, const std::vector<BoxLight>& lights, const ViewMatrix* matrix, Tally& tally)
             : examiner_(examiner), lights_(lights), exact_(lights.size()), tally_(tally) {
             std::optional<ExactView> view;
-            if (matrix) view.emplace(matrix->m);
+            if (matrix) view.emplace(*matrix);
             const auto to_camera = [&](const Vector& at) {
                 return examiner.oracle.in_camera({view ? (*view)(at) : at, 0});
             };

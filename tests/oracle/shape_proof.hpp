@@ -59,7 +59,7 @@ struct ShapeTally {
 class CellPlanes {
 public:
     CellPlanes(const Oracle& oracle, const ViewMatrix* matrix) : oracle_(oracle) {
-        if (matrix) world_.emplace(matrix->m);
+        if (matrix) world_.emplace(*matrix);
     }
     std::vector<HalfSpace> operator()(const Block& tiles, const Depths& depths) const {
         std::vector<HalfSpace> planes =
@@ -84,7 +84,7 @@ public:
         : lights(std::move(given)), shapes(examiner, lights, matrix, tally), examiner_(examiner),
           planes_(examiner.oracle, matrix), tally_(tally) {
         std::optional<AroundImage> around;
-        if (matrix) around.emplace(examiner.oracle, matrix->m);
+        if (matrix) around.emplace(examiner.oracle, *matrix);
         for (const auto& light : lights)
             balls_.push_back(is_bad(light) ? FlatBall{}
                              : around      ? (*around)(Kind::ball(light))
@@ -127,7 +127,13 @@ private:
 
 /// Calls bin() with lights in view space or, if a matrix is given, in world space.
 template <class Any, class Bin> auto bin_in(const std::vector<Any>& lights, const ViewMatrix* matrix, Bin bin) {
-    return matrix ? bin(lightbin::world_space(lights, matrix->m)) : bin(lightbin::view_space(lights));
+    if (!matrix) return bin(lightbin::view_space(lights));
+    if (!matrix->large) return bin(lightbin::world_space(lights, matrix->m));
+    const auto [eye, origin] = *matrix->large;
+    return bin(lightbin::world_space(lights, matrix->m, {eye.x, eye.y, eye.z}, [&](const Any& light) {
+        const auto local = lightbin::detail::AsLight()(light);
+        return lightbin::Placed<std::remove_const_t<decltype(local)>>{{origin.x, origin.y, origin.z}, local};
+    }));
 }
 
 /// Returns in[cell][light], slice by slice. With z-bins it has the lights of a tile's list that are in the bin.

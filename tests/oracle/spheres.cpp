@@ -46,7 +46,7 @@ struct Spheres {
             const Ball& ball = balls_[i];
             if (matrix_ == nullptr) return ball;
             if (matrix_->stretch == 0 || ball.all) return std::nullopt;
-            const ExactView view(matrix_->m);
+            const ExactView view(*matrix_);
             const Rational stretch = exact(matrix_->stretch);
             Ball image{view(ball.centre), ball.radius * stretch};
             const auto size = [](const Vector& v) { return abs(v.x) + abs(v.y) + abs(v.z); };

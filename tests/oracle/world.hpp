@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct ViewMatrix {
     std::string name;
     Affine m;
     double stretch;  ///< for a rotation times a scale: that scale; 0 for other maps
+    /// A large world: the eye, and the origin that lights are relative to. The translation of `m` is not read then.
+    struct Large {
+        glm::dvec3 eye, origin;
+    };
+    std::optional<Large> large = {};
 };
 
 /// Returns a random rotation, with scaled columns, one of which may be leaned towards another, and a translation.
@@ -47,6 +53,17 @@ inline ViewMatrix random_view(const std::string& name, Random& random, double di
     return view;
 }
 
+/// A view matrix with an eye that is about `distance` from the world's origin, and lights relative to an origin about
+/// `sector` from the eye. The doubles are rounded, and all their bits count.
+inline ViewMatrix large_world(const std::string& name, Random& random, double distance, double sector,
+                              glm::dvec3 scale, double lean) {
+    ViewMatrix view = random_view(name, random, 1e3, scale, lean);
+    const auto normals = [&] { return glm::dvec3(random.normal(), random.normal(), random.normal()); };
+    const glm::dvec3 eye = distance * normals();
+    view.large = {eye, eye + sector * normals()};
+    return view;
+}
+
 inline std::vector<ViewMatrix> view_matrices(Random& random) {
     return {{"identity", identity, 1},
             random_view("rotation", random, 0, {1, 1, 1}, 0),
@@ -58,7 +75,14 @@ inline std::vector<ViewMatrix> view_matrices(Random& random) {
             random_view("a little uneven", random, 10, {1, 0.98, 1.02}, 0.01),
             random_view("mirrored, far away", random, 1e4, {-2, 2, 2}, 0),
             random_view("sheared", random, 10, {1, 1, 1}, 1.7),
-            random_view("nearly flat", random, 10, {1, 1e-3, 1}, 0)};
+            random_view("nearly flat", random, 10, {1, 1e-3, 1}, 0),
+            large_world("eye at 1e5", random, 1e5, 0, {1, 1, 1}, 0),
+            large_world("eye at 1e9", random, 1e9, 30, {1, 1, 1}, 0),
+            large_world("eye at 1e9, sectors of 1e6", random, 1e9, 1e6, {1, 1, 1}, 0),
+            large_world("eye at 2^60", random, 0x1p60, 3000, {1, 1, 1}, 0),
+            large_world("eye at 2^127", random, 0x1p127, 0, {0.01, 0.01, 0.01}, 0),
+            large_world("eye at 1e7, sheared", random, 1e7, 10, {1, 1, 1}, 1.7),
+            large_world("eye at 1e7, a little uneven", random, 1e7, 10, {1, 0.98, 1.02}, 0.01)};
 }
 
 /// Returns world-space lights that a view matrix moves about where they are wanted in view space. Solved in double;
@@ -68,6 +92,7 @@ inline std::vector<Light> into_world(const std::vector<Light>& lights, const Vie
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r)
             m[c][r] = static_cast<double>(view.m[c][r]);
+    if (view.large) m[3] = glm::dvec4(glm::dmat3(m) * (view.large->origin - view.large->eye), 1);
     const glm::dmat4 inverse = glm::inverse(m);
     const double size = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
     std::vector<Light> world;
@@ -80,10 +105,14 @@ inline std::vector<Light> into_world(const std::vector<Light>& lights, const Vie
 
 struct ExactView {
     Vector column[4];
-    explicit ExactView(const Affine& m) {
+    explicit ExactView(const ViewMatrix& view) {
         for (int c = 0; c < 4; ++c)
-            column[c] = {exact(static_cast<double>(m[c][0])), exact(static_cast<double>(m[c][1])),
-                         exact(static_cast<double>(m[c][2]))};
+            column[c] = {exact(static_cast<double>(view.m[c][0])), exact(static_cast<double>(view.m[c][1])),
+                         exact(static_cast<double>(view.m[c][2]))};
+        if (!view.large) return;
+        const auto [eye, origin] = *view.large;
+        column[3] = (exact(origin.x) - exact(eye.x)) * column[0] + (exact(origin.y) - exact(eye.y)) * column[1] +
+                    (exact(origin.z) - exact(eye.z)) * column[2];
     }
     Vector operator()(const Vector& q) const {
         return q.x * column[0] + q.y * column[1] + q.z * column[2] + column[3];
@@ -97,7 +126,7 @@ struct ExactView {
 /// cell, either.
 class AroundImage {
 public:
-    AroundImage(const Oracle& oracle, const Affine& m) : oracle_(oracle), view_(m) {
+    AroundImage(const Oracle& oracle, const ViewMatrix& matrix) : oracle_(oracle), view_(matrix) {
         // The square of the greatest stretch is an eigenvalue of the transpose times the matrix: at most the greatest
         // sum of a row's sizes (Gershgorin).
         Rational most = 0;

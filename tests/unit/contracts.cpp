@@ -73,7 +73,7 @@ template <class Enum> void check_words(Enum first, Enum last) {
 }  // namespace
 
 TEST_CASE("an error's sentence has its numbers, with their sign where what was given may be negative") {
-    for (int code = 100; code <= static_cast<int>(ErrorCode::scratch_too_large); ++code) {
+    for (int code = 100; code <= static_cast<int>(ErrorCode::eye_not_finite); ++code) {
         const std::string sentence = to_string(static_cast<ErrorCode>(code)),
                           message = Error{static_cast<ErrorCode>(code), 1234, 5678}.message();
         const auto has = [&](const char* part) { return sentence.find(part) != std::string::npos; };
@@ -101,7 +101,7 @@ TEST_CASE("every enum has words") {
     check_words(ClipDepth::minus_one_to_one, ClipDepth::zero_to_one);
     check_words(WindowOrigin::lower_left, WindowOrigin::upper_left);
     check_words(DepthFormat::float32, DepthFormat::unorm16);
-    check_words(ErrorCode::matrix_not_finite, ErrorCode::scratch_too_large);
+    check_words(ErrorCode::matrix_not_finite, ErrorCode::eye_not_finite);
     check_words(ListEncoding::offset_count, ListEncoding::sentinel);
     check_words(ShaderLanguage::glsl_430, ShaderLanguage::wgsl);
     check_words(ShaderResource::uniform_vector, ShaderResource::writable_buffer);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 using namespace lightbin;
@@ -132,6 +133,110 @@ TEST_CASE("to_light is a lambda, a function or a function object, and its lights
     check(spots, [](const Lamp& lamp) { return Becomes{lamp.spot}; });
     // A temporary span is allowed, because its elements outlive it.
     CHECK(view_space(std::span<const Sphere>(spheres)).array.data() == spheres.data());
+}
+
+namespace {
+
+/// Puts lights that are given relative to the eye into a world where the eye is at `eye`: around their own positions in
+/// double, of which each light keeps no more than is lost as `eye + x` is rounded.
+template <class Light> auto into_world(const glm::dvec3& eye) {
+    return [=](Light light) {
+        const WorldPoint at = {eye.x + static_cast<double>(light.x), eye.y + static_cast<double>(light.y),
+                               eye.z + static_cast<double>(light.z)};
+        if constexpr (std::is_same_v<Light, Box>)
+            light.box_x -= light.x, light.box_y -= light.y, light.box_z -= light.z;
+        light.x = light.y = light.z = 0;
+        return Placed<Light>{at, light};
+    };
+}
+
+}  // namespace
+
+// That no light is missed is proven by tests/oracle, in rational numbers.
+TEST_CASE("lists far from the world's origin are those at the origin") {
+    glm::mat4 moved = full_turn;  // its translation is not to be read
+    moved[3] = {5, 1e20f, 7, 1};
+    test::Kinds kinds = test::random_kinds(150, 150, 150, 8);
+    const auto on_grid = [](float& a) { a = std::round(a * 16) / 16; };  // added to these eyes, it is not rounded
+    const auto all_on_grid = [&](auto& light) { on_grid(light.x), on_grid(light.y), on_grid(light.z); };
+    std::for_each(kinds.spheres.begin(), kinds.spheres.end(), all_on_grid);
+    std::for_each(kinds.spots.begin(), kinds.spots.end(), all_on_grid);
+    for (Box& box : kinds.boxes) {
+        all_on_grid(box);
+        on_grid(box.box_x), on_grid(box.box_y), on_grid(box.box_z);
+    }
+    const auto check = [&]<class Light>(const std::vector<Light>& lights) {
+        constexpr Options tested = {.depth_test = true};
+        const std::vector<float> low(full_view.tile_count(), 5.0f), high(full_view.tile_count(), 40.0f);
+        const ZBounds bounds = {.min = low, .max = high};
+        const auto near = world_space(lights, full_turn);
+        const std::size_t entries = test::entries(test::lists(full_view, near));
+        for (const double distance : {1e5, 1e6, 1e7, 1e8, 1e9}) {
+            const glm::dvec3 whole(distance, 61.625, distance / 2), eye(distance + 0.37, 61.62, distance / 2 + 0.11);
+            const auto far = world_space(lights, moved, {whole.x, whole.y, whole.z}, into_world<Light>(whole));
+            CHECK(test::lists(full_view, far) == test::lists(full_view, near));
+            CHECK(test::lists<tested>(full_view, far, bounds) == test::lists<tested>(full_view, near, bounds));
+            const double ratio =
+                static_cast<double>(test::entries(test::lists(
+                    full_view, world_space(lights, moved, {eye.x, eye.y, eye.z}, into_world<Light>(eye))))) /
+                static_cast<double>(entries);
+            CHECK(std::fabs(ratio - 1) < 0.01);
+        }
+        // Sectors: the lights' floats are relative to an origin in double.
+        for (const double distance : {0x1p40, 0x1p60, 0x1p127})
+            CHECK(test::lists(full_view, world_space(lights, moved, {0, -distance, distance}, [=](const Light& light) {
+                                  return Placed<Light>{{0, -distance, distance}, light};
+                              })) == test::lists(full_view, near));
+    };
+    check(kinds.spheres);
+    check(kinds.spots);
+    check(kinds.boxes);
+}
+
+TEST_CASE("spheres that are moved in doubles hold what the rounding of their places relative to the eye moves") {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> small(0, 0.01);
+    int wider = 0;  // what the rounding of the result alone would not explain
+    for (int i = 0; i < 20000; ++i) {
+        const double angle = small(random), eye = 1e9 * small(random);
+        const glm::dmat4 turn = glm::rotate(glm::dmat4(1), angle, glm::dvec3(0, 0, 1));
+        const std::vector<Placed<Sphere>> lights = {{{eye + 1 + small(random), 0, 0}, {0, 0, 0, 0}}};
+        const auto world = world_space(lights, turn, {eye, 0, 0}, [](const auto& light) { return light; });
+        const Sphere image = world.view_sphere(lights[0]);
+        const long double x = static_cast<long double>(lights[0].origin.x) - static_cast<long double>(eye),
+                          dx = static_cast<long double>(turn[0].x) * x - static_cast<long double>(image.x),
+                          dy = static_cast<long double>(turn[0].y) * x - static_cast<long double>(image.y),
+                          moved = std::sqrt(dx * dx + dy * dy);
+        CHECK_UNARY(moved <= static_cast<long double>(image.radius));
+        wider += moved > 0x1p-24L * static_cast<long double>(image.x + image.y) * (1 + 0x1p-10L);
+    }
+    CHECK(wider > 100);
+}
+
+TEST_CASE("in a large world, too, bad input stays local, and an eye that is no point is refused") {
+    const double nan = std::nan(""), infinite = HUGE_VAL;
+    const std::vector<Sphere> lights = {{0, 0, 0, 1}, {0, 0, 0, HUGE_VALF}, {0, 0, 0, -1}};
+    Binner<> binner;
+    const auto bin = [&](double x, double eye) {
+        return binner.bin(full_view, world_space(lights, full_turn, {0, 0, eye}, [=](const Sphere& light) {
+                              return Placed<Sphere>{{x, 0, eye - 5}, light};
+                          }));
+    };
+    for (const double x : {nan, infinite, -infinite, 1e39, -1.7e308}) {
+        const auto grid = bin(x, 1e9);
+        REQUIRE(grid);
+        CHECK(grid->light_counts().rejected == 2);
+        CHECK(grid->light_counts().culled == 1);
+    }
+    for (const double x : {0.0, 3e38}) CHECK(bin(x, 1e9)->light_counts().rejected == 0);
+    CHECK(bin(0, DBL_MAX)->light_counts().rejected == 0);
+    for (const double eye : {nan, infinite, -infinite}) {
+        REQUIRE(!bin(0, eye));
+        CHECK(bin(0, eye).error().code == ErrorCode::eye_not_finite);
+    }
+    const auto transposed = world_space(lights, glm::transpose(glm::translate(full_turn, {1.0f, 2.0f, 3.0f})),
+                                        {0, 0, 0}, into_world<Sphere>({}));
+    CHECK(binner.bin(full_view, transposed).error().code == ErrorCode::view_matrix_transposed);
 }
 
 TEST_CASE("a sphere of doubles becomes one of floats that holds it, and is no larger than it must be") {

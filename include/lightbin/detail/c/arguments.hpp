@@ -52,7 +52,7 @@ static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_NO_SUCH_ISA + 1);
 
 /// Returns an English sentence for a result, with its name and numbers filled in.
 inline Text text_of(const lightbin_result& result) {
-    if (result.error >= LIGHTBIN_MATRIX_NOT_FINITE && result.error <= LIGHTBIN_SCRATCH_TOO_LARGE)
+    if (result.error >= LIGHTBIN_MATRIX_NOT_FINITE && result.error <= LIGHTBIN_EYE_NOT_FINITE)
         return Error{static_cast<ErrorCode>(result.error), result.needed, result.available}.message();
     Text text;
     if (result.name != nullptr && *result.name != 0) {

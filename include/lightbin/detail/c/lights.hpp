@@ -24,6 +24,7 @@ template <class Given> struct Member {
     lightbin_floats Given::*floats;
     std::size_t each, offset;
     const char* name;
+    bool is_point = false;  ///< a centre, of which the caller has doubles if there is an eye
 };
 
 /// Describes a kind of lights, lightbin_spheres, lightbin_spots or lightbin_boxes: the C++ struct that each light is
@@ -33,14 +34,14 @@ template <> struct Kind<lightbin_spheres> {
     using Made = Sphere;
     static constexpr detail::LightKind kind = detail::LightKind::sphere;
     static constexpr Member<lightbin_spheres> members[] = {
-        {&lightbin_spheres::centre, 3, offsetof(Sphere, x), "lights.spheres.centre"},
+        {&lightbin_spheres::centre, 3, offsetof(Sphere, x), "lights.spheres.centre", true},
         {&lightbin_spheres::radius, 1, offsetof(Sphere, radius), "lights.spheres.radius"}};
 };
 template <> struct Kind<lightbin_spots> {
     using Made = Spot;
     static constexpr detail::LightKind kind = detail::LightKind::spot;
     static constexpr Member<lightbin_spots> members[] = {
-        {&lightbin_spots::centre, 3, offsetof(Spot, x), "lights.spots.centre"},
+        {&lightbin_spots::centre, 3, offsetof(Spot, x), "lights.spots.centre", true},
         {&lightbin_spots::radius, 1, offsetof(Spot, radius), "lights.spots.radius"},
         {&lightbin_spots::axis, 3, offsetof(Spot, axis_x), "lights.spots.axis"},
         {&lightbin_spots::cosine, 1, offsetof(Spot, cos_half_angle), "lights.spots.cosine"}};
@@ -49,10 +50,10 @@ template <> struct Kind<lightbin_boxes> {
     using Made = Box;
     static constexpr detail::LightKind kind = detail::LightKind::box;
     static constexpr Member<lightbin_boxes> members[] = {
-        {&lightbin_boxes::box_centre, 3, offsetof(Box, box_x), "lights.boxes.box_centre"},
+        {&lightbin_boxes::box_centre, 3, offsetof(Box, box_x), "lights.boxes.box_centre", true},
         {&lightbin_boxes::half_axes, 9, offsetof(Box, half_axes), "lights.boxes.half_axes"},
         {&lightbin_boxes::taper, 1, offsetof(Box, taper), "lights.boxes.taper"},
-        {&lightbin_boxes::centre, 3, offsetof(Box, x), "lights.boxes.centre"},
+        {&lightbin_boxes::centre, 3, offsetof(Box, x), "lights.boxes.centre", true},
         {&lightbin_boxes::radius, 1, offsetof(Box, radius), "lights.boxes.radius"}};
 };
 
@@ -86,6 +87,7 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
     Count array;
     const Given& from;
     const WorldToView* to_view;
+    const double* eye;  ///< null, or three doubles
 
     /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array. All floats of a light are
     /// copied before those of the next light, as they mostly lie side by side in memory.
@@ -98,13 +100,26 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
                             static_cast<const char*>(floats.first) + (first + i) * floats.stride,
                             member.each * sizeof(float));
             });
+        if (eye == nullptr) return;
+        for (std::size_t i = 0; i < count; ++i)
+            c::for_each_member(arrays, [&]<std::size_t m>(const lightbin_floats& doubles) {
+                constexpr const c::Member<Given>& member = c::Kind<Given>::members[m];
+                if constexpr (member.is_point) {
+                    WorldPoint origin;
+                    std::memcpy(&origin, static_cast<const char*>(doubles.first) + (first + i) * doubles.stride,
+                                sizeof origin);
+                    float* const centre = &to[i].x + member.offset / sizeof(float);
+                    centre[0] = centre[1] = centre[2] = 0;
+                    move_from_eye(origin, {eye[0], eye[1], eye[2]}, centre[0], centre[1], centre[2]);
+                }
+            });
     }
 
     /// Returns the caller's lights if they lie in memory as Spheres, Spots or Boxes do, so that kernels can read them
     /// directly; else null.
     const void* as_they_are() const {
         const void* const first = from.centre.first;
-        bool same = from.count > 0 && first != nullptr && c::address_of(first) % alignof(float) == 0;
+        bool same = eye == nullptr && from.count > 0 && first != nullptr && c::address_of(first) % alignof(float) == 0;
         c::for_each_member(from, [&]<std::size_t m>(const lightbin_floats& floats) {
             same = same && (floats.stride == sizeof(Made) || from.count == 1) &&
                    c::address_of(floats.first) == c::address_of(first) + c::Kind<Given>::members[m].offset;
@@ -118,15 +133,16 @@ template <class Given> struct Lights<Given, c::Kind<Given>> {
 namespace c {
 
 /// Returns why the floats of a kind of lights are refused.
-template <class Given> lightbin_result check_lights(const Given& lights) {
+template <class Given> lightbin_result check_lights(const Given& lights, const double* eye) {
     lightbin_result result = succeeded();
     for_each_member(lights, [&]<std::size_t m>(const lightbin_floats& floats) {
         constexpr const Member<Given>& member = Kind<Given>::members[m];
         if (result.error != LIGHTBIN_OK || floats.first == &unbounded || floats.first == &untapered) return;
+        const std::size_t bytes = member.each * (member.is_point && eye != nullptr ? sizeof(double) : sizeof(float));
         if (floats.first == nullptr)
             result = refused(LIGHTBIN_NULL_ARGUMENT, member.name);
-        else if (lights.count > 1 && floats.stride < member.each * sizeof(float))
-            result = refused(LIGHTBIN_STRIDE_TOO_SMALL, member.name, member.each * sizeof(float), floats.stride);
+        else if (lights.count > 1 && floats.stride < bytes)
+            result = refused(LIGHTBIN_STRIDE_TOO_SMALL, member.name, bytes, floats.stride);
     });
     return lights.count > 0 ? result : succeeded();
 }
@@ -142,7 +158,7 @@ struct CallLights {
     /// Returns the lights of all kinds that the program has, for the engine. The result refers to this object.
     auto all() const {
         const auto of = [this]<class Given>(const Given& from) {
-            return detail::Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr};
+            return detail::Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr, given.eye};
         };
         const auto join = []<class First, class Rest>(const First& first, const Rest& rest) {
             return detail::JoinedLights<First, Rest>{first, rest};
@@ -170,7 +186,8 @@ inline lightbin_result read_lights(const lightbin_lights* from, CallLights& ligh
         boxes.radius = {&unbounded, 0};
     }
     if (boxes.taper.first == nullptr) boxes.taper = {&untapered, 0};
-    result = first_error(check_lights(given.spheres), check_lights(given.spots), check_lights(boxes));
+    result = first_error(check_lights(given.spheres, given.eye), check_lights(given.spots, given.eye),
+                         check_lights(boxes, given.eye));
     if (result.error != LIGHTBIN_OK) return result;
     if (!detail::kinds_have_spots && given.spots.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_SPOTS");
     if (!detail::kinds_have_boxes && boxes.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BOXES");
@@ -178,7 +195,12 @@ inline lightbin_result read_lights(const lightbin_lights* from, CallLights& ligh
         Matrix matrix;
         result = read_member(given.view_matrix, matrix, "lights.view_matrix");
         if (result.error != LIGHTBIN_OK) return result;
-        lights.to_view.emplace(matrix);
+        if (given.eye != nullptr)
+            lights.to_view.emplace(matrix, WorldPoint{given.eye[0], given.eye[1], given.eye[2]});
+        else
+            lights.to_view.emplace(matrix);
+    } else if (given.eye != nullptr) {
+        return refused(LIGHTBIN_NULL_ARGUMENT, "lights.view_matrix");
     }
     // The binner adds the numbers of lights of all kinds without a check for overflow.
     constexpr std::uint64_t most = 0xffffffff;

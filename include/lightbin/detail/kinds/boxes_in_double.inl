@@ -5,7 +5,7 @@
 //
 // Rounding, with e = 2^-53: let M be the sum of the absolute values of all terms in the three rows of the transform,
 // for the centre and the half axes. Each term goes through at most 8 roundings, so corners are within 8e M = 2^-50 M;
-// BoxLanes::error is 2^-46 M.
+// BoxLanes::error is 2^-46 M, more where the given centres are rounded: WorldToView::position_error().
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor
 #pragma once
 #include <lightbin/detail/kinds/boxes.inl>
@@ -36,7 +36,7 @@ inline void project_box_in_double(const Camera& camera, const WorldToView* to_vi
     for (unsigned axis = 0; axis < 3; ++axis)
         transform(given.half_axes[axis], false, box.half_axes[axis]);
     box.taper = static_cast<double>(given.taper);
-    box.error = terms * 0x1p-46;
+    box.error = terms * (0x1p-46 + (to_view != nullptr ? to_view->position_error() : 0));
     // A box that is too large to be rounded to float bounds nothing: the light is then its whole ball.
     double view_size = scalar::size_of(box);
     if (!(view_size + box.error <= 0x1p60)) {

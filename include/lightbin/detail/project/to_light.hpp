@@ -38,6 +38,35 @@ struct AsLight {
     }
 };
 
+/// Adds  origin - eye  to a float coordinate. The result is less than 2^-24 (1 + 2^-20) of itself off the exact sum, as
+/// the difference is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2). It is +inf,
+/// which is bad input, for a NaN, and where the sum is beyond the range of floats.
+inline void move_from_eye(double origin, double eye, float& coordinate) {
+    const double difference = origin - eye, moved = difference - origin;
+    const double rest = (origin - (difference - moved)) - (eye + moved);
+    const double sum = difference + static_cast<double>(coordinate) + rest;
+    coordinate = abs_of(sum) < 0x1.ffffffp127 ? static_cast<float>(sum) : infinity;  // below, FLT_MAX is the nearest
+}
+inline void move_from_eye(const WorldPoint& origin, const WorldPoint& eye, float& x, float& y, float& z) {
+    move_from_eye(origin.x, eye.x, x);
+    move_from_eye(origin.y, eye.y, y);
+    move_from_eye(origin.z, eye.z, z);
+}
+
+/// Makes lights whose centres are relative to the eye, from the Placed ones that `to_light` makes.
+template <class ToLight> struct FromEye {
+    WorldPoint eye;
+    ToLight to_light;
+
+    template <class Element> auto operator()(const Element& element) const -> decltype(to_light(element).light) {
+        auto [origin, light] = to_light(element);
+        move_from_eye(origin, eye, light.x, light.y, light.z);
+        if constexpr (std::convertible_to<decltype(light), Box>)
+            move_from_eye(origin, eye, light.box_x, light.box_y, light.box_z);
+        return light;
+    }
+};
+
 /// What `to_light`, as const, returns for an array element.
 template <class ToLight, class Light>
 using MadeBy = decltype(std::declval<const ToLight&>()(std::declval<const Light&>()));
@@ -60,7 +89,7 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
             "lightbin::Sphere, a lightbin::Spot or a lightbin::Box of a light");
     else
         static_assert(can_be_called, "lightbin: to_light is called, as const, with a const reference to one of the "
-                                     "lights, and can't be called so");
+                                     "lights, and can't be called so (with an eye, it must return a Placed light)");
     constexpr auto stand_in = [](const Light&) { return Sphere(); };
     if constexpr (can_be_called) {
         using Made = MadeBy<ToLight, Light>;

@@ -10,6 +10,9 @@
 // most u, and three sums follow. So a centre is within 6u of the sum over j of |A_j| |p_j - o_j| of the exact one.
 // Lights that are too large, small or far away for the float path are transformed in double, one by one.
 //
+// With an eye, o and A o + t are 0 and positions relative to the eye were rounded to float. The error of that, at most
+// (1 + 2^-20) u, takes the place of the differences' one. In double it is added: WorldToView::position_error().
+//
 // Only a rotation with a uniform scale maps every cone to a cone. Let the factors by which A stretches lengths lie
 // between (1 - d) s and s. By the polar decomposition A = Q P, with Q orthogonal and P stretching by the same factors,
 // and so A p is at most d s |p| away from s Q p. The images of a cone's axis under A and under Q then differ by an
@@ -69,14 +72,23 @@ public:
         if (affine_) find_float_transform();
     }
 
+    /// The matrix without its translation, for positions relative to the eye that were rounded to float.
+    WorldToView(const Matrix& matrix, const WorldPoint& eye) : WorldToView(without_translation(matrix)) {
+        position_error_ = 0x1p-24 * (1 + 0x1p-20);
+        eye_finite_ = is_finite(eye.x) && is_finite(eye.y) && is_finite(eye.z);
+    }
+
     /// Returns why the matrix can transform no light, or nothing if it can.
     std::optional<ErrorCode> refusal() const {
+        if (!eye_finite_) return ErrorCode::eye_not_finite;
         if (affine_) return {};
         return finite(m_) && last_row_is_affine(transposed(m_)) ? ErrorCode::view_matrix_transposed
                                                                 : ErrorCode::view_matrix_not_affine;
     }
     const FloatTransform& in_float() const { return in_float_; }
     const Matrix& matrix() const { return m_; }
+    /// A bound on the relative error of each coordinate of a given position.
+    double position_error() const { return position_error_; }
 
     /// Returns the image of a sphere, computed in double, or the sphere itself if a coordinate is NaN or infinite or
     /// its radius NaN or negative. Not inlined, as instruction sets with fused multiply-adds would then use them here.
@@ -90,10 +102,14 @@ public:
             centre[row] = a + b + c + d;
             if (!(abs_of(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
             // Rounding the centre to float has a relative error of 2^-24; 2^-50 covers the sum in double.
-            error += 0x1p-24 * abs_of(centre[row]) + 0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
+            error += 0x1p-24 * abs_of(centre[row]) +
+                     (0x1p-50 + position_error_) * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
+        // The sphere may be the least one around a spot, whose apex, at most a radius off the centre, is what was
+        // rounded. By the Cauchy-Schwarz inequality that adds up to 3 position_error_ of the radius.
         const double radius =
-            (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) + static_cast<double>(FLT_MIN);
+            (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23 + 4 * position_error_) +
+            static_cast<double>(FLT_MIN);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
@@ -108,6 +124,11 @@ public:
     }
 
 private:
+    static Matrix without_translation(Matrix matrix) {
+        for (int row = 0; row < 3; ++row)
+            matrix.columns[3][row] = 0;
+        return matrix;
+    }
     static bool last_row_is_affine(const Matrix& m) {
         return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
     }
@@ -171,6 +192,8 @@ private:
     double stretch_;     ///< the linear part's largest singular value, rounded up: no length is stretched more
     double anisotropy_;  ///< the linear part's smallest singular value is at least (1 - anisotropy_) * the largest
     FloatTransform in_float_ = {};
+    double position_error_ = 0;
+    bool eye_finite_ = true;
 };
 
 }}}  // namespace lightbin::detail
