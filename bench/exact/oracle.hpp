@@ -301,7 +301,7 @@ public:
                 m_[column][row] = exact(camera.m[column][row]);
         const auto zero = [&](int column, int row) { return m_[column][row].is_zero(); };
         // Decider 1 assumes that these entries of the matrix are 0; decider 2 does not.
-        const bool axes = zero(1, 0) && zero(0, 1) && zero(0, 2) && zero(1, 2) && zero(0, 3) && zero(1, 3);
+        const bool axes = zero(1, 0) && zero(0, 1) && zero(0, 3) && zero(1, 3);
         const bool eye = orthographic() ? m_[3][3] > 0 && zero(2, 0) && zero(2, 1)
                                         : zero(3, 3) && zero(3, 0) && zero(3, 1);
         if (!axes || !eye) std::abort();
@@ -310,15 +310,7 @@ public:
         // slope of NDC depth, which the user says is reversed or not.
         const Rational& along = orthographic() ? m_[2][2] : m_[2][3];
         depth_sign_ = (along > 0) != (orthographic() && camera.reversed) ? 1 : -1;
-        for (const HalfSpace& plane : depth_planes()) {  // a.z z + b >= 0, z = sign * depth
-            const Rational slope = depth_sign_ * plane.a.z;
-            if (slope > 0)
-                range_.at_least(-plane.b / slope);
-            else if (slope < 0)
-                range_.at_most(plane.b / -slope);
-            else if (plane.b < 0)
-                range_.empty = true;
-        }
+        find_range();
     }
 
     const Camera& camera() const { return camera_; }
@@ -327,7 +319,7 @@ public:
     int tiles_y() const { return (camera_.height + camera_.tile - 1) / camera_.tile; }
     int depth_sign() const { return depth_sign_; }
 
-    /// View depths of the near and the far plane; no maximum if the far plane is at infinity.
+    /// The depths of the whole clip volume; no maximum if it reaches to infinity.
     const Depths& range() const { return range_; }
 
     /// The depths of a cell: from near to far plane, and between `min` and `max` where they are given and finite.
@@ -382,24 +374,63 @@ public:
         return cell;
     }
 
-    /// The view depth of a window depth in 0..1; nothing if it is at infinity or beyond.
-    std::optional<Rational> view_depth(const Rational& window_depth) const {
+    /// The view depth of a window depth in 0..1 at a point of the image in pixels; nothing if it is at infinity or
+    /// beyond.
+    std::optional<Rational> view_depth(const Rational& window_depth, const Rational& x, const Rational& y) const {
         const Rational ndc = camera_.zero_to_one ? window_depth : 2 * window_depth - 1;
-        const Rational bottom = m_[2][2] - ndc * m_[2][3], top = ndc * m_[3][3] - m_[3][2];
-        if (bottom.is_zero()) return std::nullopt;
-        const Rational depth = depth_sign_ * top / bottom;
+        const Line distance = along(clip_plane(1, -ndc), x, y);
+        if (distance.slope.is_zero()) return std::nullopt;
+        const Rational depth = -distance.offset / distance.slope;
         if (!orthographic() && depth < 0) return std::nullopt;
         return depth;
     }
 
 private:
+    /// The half-space of view space where  z clip_z + w clip_w >= 0.
+    HalfSpace clip_plane(const Rational& z, const Rational& w) const {
+        const auto mix = [&](int column) { return z * m_[column][2] + w * m_[column][3]; };
+        return {{mix(0), mix(1), mix(2)}, mix(3)};
+    }
     /// The near and the far plane as half-spaces of view space: -w <= z <= w, or 0 <= z <= w.
     std::vector<HalfSpace> depth_planes() const {
-        const auto row = [&](const Rational& z, const Rational& w) {
-            const auto mix = [&](int column) { return z * m_[column][2] + w * m_[column][3]; };
-            return HalfSpace{{mix(0), mix(1), mix(2)}, mix(3)};
-        };
-        return {row(1, camera_.zero_to_one ? 0 : 1), row(-1, 1)};
+        return {clip_plane(1, camera_.zero_to_one ? 0 : 1), clip_plane(-1, 1)};
+    }
+
+    /// What a half-space says at each depth of the line of sight through a point of the image, in pixels.
+    Line along(const HalfSpace& plane, const Rational& x, const Rational& y) const {
+        const Line across = line(0, width_, x), down = line(1, height_, y);
+        const Rational a_x = x_sign() * plane.a.x, a_y = y_sign() * plane.a.y;
+        return {plane.b + a_x * across.offset + a_y * down.offset,
+                depth_sign_ * plane.a.z + a_x * across.slope + a_y * down.slope};
+    }
+
+    /// Finds the depths of the clip volume. Along a line of sight, clip z is a multiple of depth plus a constant; the
+    /// depth of a plane is monotonic in the multiple (orthographic: the constant), which is linear across the image. So
+    /// the least and the greatest depth are at the image's corners. If the near plane leaves nothing of a corner's line,
+    /// it is nearly parallel to other lines and cuts them at any depth, so that there is no greatest depth.
+    void find_range() {
+        range_.empty = true;
+        bool endless = false;
+        for (const Rational& x : {Rational(0), width_})
+            for (const Rational& y : {Rational(0), height_}) {
+                Depths seen;
+                for (const HalfSpace& plane : depth_planes()) {
+                    const Line inside = along(plane, x, y);
+                    const Rational end = inside.slope.is_zero() ? Rational(0) : Rational(-inside.offset / inside.slope);
+                    if (inside.slope > 0)
+                        seen.at_least(end);
+                    else if (inside.slope < 0)
+                        seen.at_most(end);
+                    else if (inside.offset < 0)
+                        seen.empty = true;
+                }
+                endless |= seen.contains_none() || !seen.max;
+                if (seen.contains_none()) continue;
+                if (range_.empty || *seen.min < *range_.min) range_.min = seen.min;
+                if (range_.empty || (seen.max && *seen.max > *range_.max)) range_.max = seen.max;
+                range_.empty = false;
+            }
+        if (endless) range_.max.reset();
     }
 
     Edges edges(int first, int last, int side) const {

@@ -17,7 +17,6 @@ enum class ErrorCode : std::uint8_t {
     projection_transposed,
     eye_not_at_origin,
     image_axes_rotated,
-    oblique_depth,
     no_near_plane,
     near_plane_too_close,
     depth_range_not_finite,
@@ -92,9 +91,6 @@ inline constexpr const char* error_sentences[] = {
      "reads z). Pass the projection alone, not projection times view, and not the view matrix; where the projection "
      "itself turns the image, apply that to the pixels. If depth lies along another axis than z, as with z up in "
      "Panda3D, change the axes of both matrices"),
-    ("the projection has an oblique near plane (its z row reads x or y): pass the projection without it, with a near "
-     "distance of almost 0 and no far plane (orthographic: with planes around all that is drawn). Its tiles are the "
-     "same, and it misses no light"),
     ("the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 or "
      "less? Check the matrix's z row and the option clip_depth"),
     "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller units",

@@ -94,53 +94,52 @@ typedef enum lightbin_error {
     LIGHTBIN_PROJECTION_TRANSPOSED = 102,
     LIGHTBIN_EYE_NOT_AT_ORIGIN = 103,
     LIGHTBIN_IMAGE_AXES_ROTATED = 104,
-    LIGHTBIN_OBLIQUE_DEPTH = 105,
-    LIGHTBIN_NO_NEAR_PLANE = 106,
-    LIGHTBIN_NEAR_PLANE_TOO_CLOSE = 107,
-    LIGHTBIN_DEPTH_RANGE_NOT_FINITE = 108,
-    LIGHTBIN_DEGENERATE_SCALE = 109,
-    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE = 110,
-    LIGHTBIN_VIEWPORT_OUT_OF_RANGE = 111,
-    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE = 112,
-    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE = 113,
-    LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 114,
-    LIGHTBIN_TOO_MANY_LIGHTS = 115,
-    LIGHTBIN_TOO_MANY_ENTRIES = 116,
-    LIGHTBIN_TOO_MANY_PAIRS = 117,
-    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 118,
-    LIGHTBIN_ID_BUFFER_TOO_SMALL = 119,
-    LIGHTBIN_GRIDS_DIFFER = 120,
-    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 121,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 122,
-    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 123,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL = 124,
-    LIGHTBIN_NO_SLICES = 125,
-    LIGHTBIN_SLICE_RANGE_EMPTY = 126,
-    LIGHTBIN_SLICES_DO_NOT_ASCEND = 127,
-    LIGHTBIN_TOO_MANY_CELLS = 128,
-    LIGHTBIN_TOO_FEW_WEIGHTS = 129,        /* in C++ alone */
-    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 130, /* in C++ alone */
-    LIGHTBIN_IDS_TOO_NARROW = 131,
-    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 132,
-    LIGHTBIN_CAPACITY_UNKNOWN = 133,
-    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 134,
-    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
-    LIGHTBIN_NO_STORAGE_BUFFERS = 136,
-    LIGHTBIN_NO_TEXEL_BUFFERS = 137,
-    LIGHTBIN_SLOT_OUT_OF_RANGE = 138,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE = 139,
-    LIGHTBIN_NO_SETS = 140,
-    LIGHTBIN_NO_PUSH_CONSTANTS = 141,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 142,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER = 143,
-    LIGHTBIN_NO_WAVE_OPERATIONS = 144,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 145,
-    LIGHTBIN_BINDINGS_OVERLAP = 146,
-    LIGHTBIN_NOT_A_PREFIX = 147,
-    LIGHTBIN_TOO_MANY_SLICES = 148,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 149,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 150,
-    LIGHTBIN_EYE_NOT_FINITE = 151,
+    LIGHTBIN_NO_NEAR_PLANE = 105,
+    LIGHTBIN_NEAR_PLANE_TOO_CLOSE = 106,
+    LIGHTBIN_DEPTH_RANGE_NOT_FINITE = 107,
+    LIGHTBIN_DEGENERATE_SCALE = 108,
+    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE = 109,
+    LIGHTBIN_VIEWPORT_OUT_OF_RANGE = 110,
+    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE = 111,
+    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE = 112,
+    LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 113,
+    LIGHTBIN_TOO_MANY_LIGHTS = 114,
+    LIGHTBIN_TOO_MANY_ENTRIES = 115,
+    LIGHTBIN_TOO_MANY_PAIRS = 116,
+    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 117,
+    LIGHTBIN_ID_BUFFER_TOO_SMALL = 118,
+    LIGHTBIN_GRIDS_DIFFER = 119,
+    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 120,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 121,
+    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 122,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 123,
+    LIGHTBIN_NO_SLICES = 124,
+    LIGHTBIN_SLICE_RANGE_EMPTY = 125,
+    LIGHTBIN_SLICES_DO_NOT_ASCEND = 126,
+    LIGHTBIN_TOO_MANY_CELLS = 127,
+    LIGHTBIN_TOO_FEW_WEIGHTS = 128,        /* in C++ alone */
+    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 129, /* in C++ alone */
+    LIGHTBIN_IDS_TOO_NARROW = 130,
+    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 131,
+    LIGHTBIN_CAPACITY_UNKNOWN = 132,
+    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 133,
+    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 134,
+    LIGHTBIN_NO_STORAGE_BUFFERS = 135,
+    LIGHTBIN_NO_TEXEL_BUFFERS = 136,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 137,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 138,
+    LIGHTBIN_NO_SETS = 139,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 140,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 141,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 142,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 143,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 144,
+    LIGHTBIN_BINDINGS_OVERLAP = 145,
+    LIGHTBIN_NOT_A_PREFIX = 146,
+    LIGHTBIN_TOO_MANY_SLICES = 147,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 148,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 149,
+    LIGHTBIN_EYE_NOT_FINITE = 150,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -258,6 +257,7 @@ typedef struct lightbin_view_info {
     int32_t looks_zero_to_one; /* no depth reaches NDC -1: is clip_depth right? */
     int32_t pixels_not_square; /* by more than 2 %: is the viewport's size stale, or the aspect inverted? */
     int32_t viewport_empty;    /* the width or the height is 0: were they given? */
+    int32_t oblique;           /* 0 or 1: the near plane is oblique, as for mirrors */
 } lightbin_view_info;
 
 /* Describes a view. Set info->size before. */
@@ -280,8 +280,9 @@ LIGHTBIN_API lightbin_result lightbin_view_unproject(const lightbin_view* view, 
 LIGHTBIN_API lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, double upper,
                                                   float depths[2]);
 
-/* Returns the window depth of a view depth, up to rounding. NaN for an infinite view depth, or if view is null. */
-LIGHTBIN_API float lightbin_view_window_depth(const lightbin_view* view, double view_depth);
+/* Returns the window depth of an image point (x, y, view depth), up to rounding. x and y matter, and the viewport must
+ * not be empty, with an oblique near plane alone. NaN for an infinite view depth, or if a pointer is null. */
+LIGHTBIN_API float lightbin_view_window_depth(const lightbin_view* view, const double image[3]);
 
 /* ---- Lights ---- */
 
@@ -396,7 +397,9 @@ LIGHTBIN_API int32_t lightbin_slices_at(const lightbin_slices* slices, float dep
 typedef enum lightbin_depth_format {
     LIGHTBIN_FLOAT32 = 0,
     LIGHTBIN_UNORM24 = 1,
-    LIGHTBIN_UNORM16 = 2
+    LIGHTBIN_UNORM16 = 2,
+    /* No window depths, but view depths as 32-bit floats, as of a logarithmic depth buffer. Background is +inf. */
+    LIGHTBIN_VIEW_DEPTH = 3
 } lightbin_depth_format;
 
 /* A depth buffer in main memory that covers the viewport and nothing else: window depths from 0 to 1, rows of pixels
@@ -767,13 +770,14 @@ typedef struct lightbin_reduce_options {
     int32_t fragment;                 /* 0: a compute shader; not 0: a fragment shader */
     int32_t samples;                  /* a pixel of the depth texture, 1 to 8; 0: 1 */
     int32_t format;                   /* a lightbin_depth_format */
-    int32_t reversed_z, orthographic; /* those of lightbin_view_info */
+    int32_t reversed_z, orthographic, oblique; /* those of lightbin_view_info */
     int32_t skip_background;          /* not 0: ignore samples at the far plane, where nothing is drawn */
     int32_t flip_y;                   /* not 0: row 0 of the texture is opposite to the view's origin */
     int32_t viewport_corner;          /* not 0: the viewport begins at the texel `corner` of the texture */
     int32_t push_constants;           /* not 0: Vulkan: the constants are push constants */
     int32_t slots_given;              /* 0: the slots are the bindings 0 to 2 of set 0 in the order below */
     lightbin_slot depth, z_bounds, grid;
+    int32_t unused;
 } lightbin_reduce_options;
 
 /* On success *shader is to be freed with lightbin_shader_destroy(). Errors name the option that the language or the
@@ -782,11 +786,12 @@ typedef struct lightbin_reduce_options {
  * LIGHTBIN_BINDINGS_OVERLAP, LIGHTBIN_NO_PUSH_CONSTANTS. */
 LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, lightbin_shader** shader);
 
-/* The constants `grid`, `planes` and `corner` of lightbin_reduce_shader(), with the layout of its uniform block. */
+/* The constants `grid`, `planes`, `corner` and `tilt` of lightbin_reduce_shader(), with its uniform block's layout. */
 typedef struct lightbin_reduce_constants {
     uint32_t tile_size, tiles_x, width, height;
     float far_end, slope, margin, unused;
     int32_t corner_x, corner_y, unused_corner[2];
+    float tilt_x, tilt_y, unused_tilt[2];
 } lightbin_reduce_constants;
 LIGHTBIN_API lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, int32_t corner_x,
                                                            int32_t corner_y, lightbin_reduce_constants* constants);

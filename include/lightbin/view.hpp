@@ -79,7 +79,8 @@ public:
     /// projection  maps view space to clip space: a glm::mat4, any projection[column][row] of floats or doubles, or
     ///             another type that matrix.hpp lists. Perspective projections may be symmetric or not, jittered, with
     ///             finite or infinite far plane, standard or reversed Z, look down -z or +z, and be flipped in x or y.
-    ///             Orthographic ones may be centred or not.
+    ///             Orthographic ones may be centred or not. The near plane may be oblique, as for mirrors: the View
+    ///             looks along z, whichever way the plane is turned.
     /// viewport    0 to max_side pixels a side. An empty viewport has no tiles.
     template <class Matrix>
     static Result<View> from_projection(const Matrix& projection, ImageSize viewport,
@@ -103,27 +104,36 @@ public:
     WindowOrigin origin() const { return origin_; }
     bool orthographic() const { return projection_.camera.orthographic; }
     bool reversed_z() const { return projection_.depth.reversed; }
+    /// Whether the near plane is oblique, as for mirrors, water and portals.
+    bool oblique() const { return projection_.depth.oblique(); }
 
     /// Returns what was read from the matrix, to be printed with std::puts(to_string(view.summary()).c_str()).
     ViewSummary summary() const {
         return projection_.summary(viewport_.width, viewport_.height, tile_size_);
     }
 
-    /// View depth of the near plane, rounded down.
+    /// Least view depth in the clip region, rounded down: that of the near plane, unless this is oblique.
     float near_depth() const { return projection_.camera.near_depth; }
-    /// View depth of the far plane, rounded up; +inf if the projection has no far plane.
+    /// Greatest view depth in the clip region, rounded up; +inf if the projection has no far plane. Oblique near planes
+    /// tilt the far plane, which then mostly cuts off nothing.
     float far_depth() const { return projection_.camera.far_depth; }
 
-    /// Returns the least and greatest view depth of all points whose window depth, which a depth buffer stores, lies in
-    /// [lower, upper], rounded outward. 0 and 1 are the two ends of the clip-depth range.
+    /// Returns the least and greatest view depth of all points of the image whose window depth, which a depth buffer
+    /// stores, lies in [lower, upper], rounded outward. 0 and 1 are the two ends of the clip-depth range.
     DepthInterval view_depths(double lower, double upper) const {
         DepthInterval depths = {};
-        projection_.depth.view_depths(lower, upper, depths.min, depths.max);
+        projection_.depth.view_depths(lower, upper, projection_.depth.tilts_around(), depths.min, depths.max);
         return depths;
     }
 
-    /// Window depth of a view depth, up to rounding. NaN for an infinite view depth.
-    float window_depth(double view_depth) const { return projection_.depth.window_depth(view_depth); }
+    /// Window depth of an image point, up to rounding. NaN for an infinite view depth. With an oblique near plane
+    /// alone, x and y matter, and the viewport must not be empty.
+    float window_depth(const ImagePoint& point) const {
+        const detail::DepthMap& map = projection_.depth;
+        if (!map.oblique()) return map.window_depth(point.depth);
+        return map.tilted(map.tilt_at(2 * point.x / viewport_.width - 1, 2 * point.y / viewport_.height - 1))
+            .window_depth(point.depth);
+    }
 
     /// Returns where in the image a view-space point lies, inside or outside of the viewport, up to rounding in double.
     /// For a point that is not in front of a perspective view's eye, depth is 0 or less, and x and y mean nothing.
@@ -157,7 +167,7 @@ public:
     }
 
 private:
-    friend const detail::Camera& detail::camera_of(const View& view);
+    friend const detail::Projection& detail::projection_of(const View& view);
 
     View() = default;
 
@@ -195,8 +205,11 @@ private:
     WindowOrigin origin_ = WindowOrigin::lower_left;
 };
 
+inline const detail::Projection& detail::projection_of(const View& view) {
+    return view.projection_;
+}
 inline const detail::Camera& detail::camera_of(const View& view) {
-    return view.projection_.camera;
+    return projection_of(view).camera;
 }
 
 }}  // namespace lightbin

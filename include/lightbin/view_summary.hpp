@@ -17,6 +17,9 @@ struct ViewSummary {
     double near_depth, far_depth;
     bool looks_down_negative_z;  ///< whether the view looks along -z: true for right-handed view spaces
     bool reversed_z;
+    bool oblique;             ///< the near plane is oblique: near_depth and far_depth are those of the image's corners
+    /// The near plane (x, y, z, w) in view space, with a normal of length 1: it is drawn where x px + y py + z pz + w >= 0.
+    double near_plane[4];
     bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
     int width, height, tile_size;  ///< in pixels
 
@@ -51,6 +54,12 @@ inline Text to_string(const ViewSummary& view) {
     Text line;
     line.append(text);
     if (view.reversed_z) line.append(", reversed Z");
+    if (view.oblique) {
+        const double* const plane = view.near_plane;
+        std::snprintf(text, sizeof text, ", oblique near plane (%.4g, %.4g, %.4g, %.4g)", plane[0], plane[1], plane[2],
+                      plane[3]);
+        line.append(text);
+    }
     if (view.x_flipped) line.append(", x flipped");
     if (view.y_flipped) line.append(", y flipped");
     if (view.looks_transposed) line.append("; is it transposed: is its layout right?");

@@ -29,22 +29,25 @@ enum class DepthFormat : std::uint8_t {
     float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
     unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
     unorm16,  ///< a 16-bit integer n that stands for the depth n / (2^16 - 1)
+    /// A 32-bit float that is no window depth but the view depth itself, such as one converted from a logarithmic depth:
+    /// within 2^-18 of the fragment's. Background is +inf, and NaN may be any depth, -inf to +inf.
+    view_depth,
 };
 
 constexpr const char* to_string(DepthFormat format) {
-    return detail::name_at(format, {"float32", "unorm24", "unorm16"});
+    return detail::name_at(format, {"float32", "unorm24", "unorm16", "view_depth"});
 }
 
 /// A depth buffer in main memory that covers the view's viewport and nothing else. Samples are window depths from 0 to
-/// 1, as glReadPixels returns them.
+/// 1, as glReadPixels returns them, or view depths.
 struct DepthBuffer {
     /// Rows of pixels from the view's window origin on. The samples of one pixel are next to each other.
     std::span<const float> depth = {};
     int samples = 1;            ///< samples per pixel, 1 to 8
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
-    /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is
-    /// drawn. Right for buffers that were cleared to that value and drawn with a strict depth comparison, and for
+    /// Treats samples at the far end of the depth range (1, or 0 with reversed Z, or +inf if they are view depths) as
+    /// background, where nothing is drawn. Right for buffers that were cleared to that value and drawn with a strict depth comparison, and for
     /// lights of opaque surfaces alone: transparent ones are seen in front of the background, too.
     bool skip_background = false;
 };
@@ -53,8 +56,16 @@ namespace detail {
 
 /// Returns the range of view depths of all fragments that can have stored window depths between window.lower and
 /// window.upper. Computed in double, because a float sum near 1 would itself be off by one step of the format.
-inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFormat format) {
+///
+/// tilt  where the fragments lie in an image with an oblique near plane: DepthMap::tilts_around()
+inline DepthInterval fragment_depths(const DepthMap& map, Extremes window, DepthFormat format, const Tilt& tilt = {}) {
     if (!(window.lower <= window.upper)) return {infinity, -infinity};
+    if (format == DepthFormat::view_depth) {
+        const auto moved = [](float depth, float outward) {
+            return depth * (1 + (depth < 0 ? -outward : outward) * 0x1p-18f * (1 + 0x1p-5f));
+        };
+        return {moved(window.lower, -1), moved(window.upper, 1)};
+    }
     double low = static_cast<double>(window.lower), high = static_cast<double>(window.upper);
     if (format == DepthFormat::float32) {
         // Rounding moves a normal float by at most 2^-23 of itself, but may flush a denormal one to zero.
@@ -68,15 +79,43 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
         low = low - reach;
         high = high + reach;
     }
-    return view.view_depths(min_of(max_of(low, 0.0), 1.0), min_of(max_of(high, 0.0), 1.0));
+    DepthInterval depths = {};
+    map.view_depths(min_of(max_of(low, 0.0), 1.0), min_of(max_of(high, 0.0), 1.0), tilt, depths.min, depths.max);
+    return depths;
+}
+
+/// Reduces one tile of an image with an oblique near plane. There one window depth is another view depth in each pixel,
+/// so samples are converted before they are compared.
+///
+/// x0, x1, y  the tile's columns of pixels, and the row that the first of `rows` is
+/// samples    how many a pixel has: more than one may lie anywhere in the pixel, a single one in its middle
+inline DepthInterval reduce_oblique_tile(const DepthMap& map, ImageSize viewport, const DepthRows& rows,
+                                         std::size_t x0, std::size_t x1, std::size_t y, std::size_t samples,
+                                         float skipped, DepthFormat format) {
+    const double width = viewport.width, height = viewport.height, reach = samples > 1 ? 1 : 0;
+    DepthInterval depths = {infinity, -infinity};
+    for (std::size_t row = 0; row < rows.rows; ++row)
+        for (std::size_t x = x0; x < x1; ++x) {
+            const Tilt tilt = map.tilts_around((2 * static_cast<double>(x) + 1) / width - 1,
+                                               (2 * static_cast<double>(y + row) + 1) / height - 1, reach / width,
+                                               reach / height);
+            for (std::size_t i = x * samples; i < (x + 1) * samples; ++i) {
+                const float sample = rows.samples[row * rows.pitch + i];
+                if (sample <= skipped && sample >= skipped) continue;
+                const Extremes window = is_nan(sample) ? Extremes{0, 1} : Extremes{sample, sample};
+                const DepthInterval found = fragment_depths(map, window, format, tilt);
+                depths = {min_of(depths.min, found.min), max_of(depths.max, found.max)};
+            }
+        }
+    return depths;
 }
 
 }  // namespace detail
 
 /// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies
 /// within its tile's bounds, which are rounded outward and widened by the rounding of the DepthFormat. A tile where
-/// nothing is drawn has min = +inf and max = -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach
-/// from the near to the far plane.
+/// nothing is drawn has min = +inf and max = -inf. Window depths outside 0..1 are clamped; a NaN makes its tile reach
+/// from the near to the far plane. With an oblique near plane this takes longer, as each sample is converted by itself.
 ///
 /// isa  use no wider instructions than these; the result is the same
 ///
@@ -104,24 +143,35 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
         if (!side.empty() && side.size() < tiles)
             return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
 
-    const float skipped = !buffer.skip_background  ? std::numeric_limits<float>::quiet_NaN()
-                          : view.reversed_z() ? 0.0f
-                                              : 1.0f;
+    const bool converted = buffer.format == DepthFormat::view_depth;
+    const float skipped = !buffer.skip_background ? std::numeric_limits<float>::quiet_NaN()
+                          : converted             ? detail::infinity
+                          : view.reversed_z()     ? 0.0f
+                                                  : 1.0f;
     // A tile larger than the viewport is treated as one of its size, so that the products below do not overflow.
     const std::size_t size = static_cast<std::size_t>(
         detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
-    const std::size_t height = static_cast<std::size_t>(viewport.height);
+    const std::size_t width = static_cast<std::size_t>(viewport.width),
+                      height = static_cast<std::size_t>(viewport.height);
+    const detail::DepthMap& map = detail::projection_of(view).depth;
     isa = machine_isa(isa);
     for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
         const detail::DepthRows samples = {buffer.depth.data() + y * pitch, pitch,
                                            detail::min_of(size, height - y), row};
-        detail::reduce_tile_row(
-            isa, samples, size * samples_a_pixel, skipped, [&](std::size_t tile, detail::Extremes range) {
-                const DepthInterval depths = detail::fragment_depths(view, range, buffer.format);
-                if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
-                if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
-            });
+        const auto store = [&](std::size_t tile, DepthInterval depths) {
+            if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
+            if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
+        };
+        if (map.oblique() && !converted)
+            for (std::size_t tile = 0, x = 0; tile < tiles_x; ++tile, x += size)
+                store(tile, detail::reduce_oblique_tile(map, viewport, samples, x, detail::min_of(x + size, width), y,
+                                                        samples_a_pixel, skipped, buffer.format));
+        else
+            detail::reduce_tile_row(isa, samples, size * samples_a_pixel, skipped,
+                                    [&](std::size_t tile, detail::Extremes range) {
+                                        store(tile, detail::fragment_depths(map, range, buffer.format));
+                                    });
     }
     const auto given = [&](std::span<float> side) {
         return side.empty() ? std::span<const float>{} : std::span<const float>(side.data(), tiles);

@@ -52,6 +52,7 @@ export interface ViewInfo {
     /** Rounded outward; farDepth is Infinity if there is no far plane. */
     readonly nearDepth: number, farDepth: number;
     readonly orthographic: number, reversedZ: number, xFlipped: number, yFlipped: number, looksDownNegativeZ: number;
+    readonly oblique: number;
     /** 1 where the matrix or the viewport looks like a common mistake. */
     readonly looksTransposed: number, looksLikeViewMatrix: number, looksTurned: number, looksBehind: number;
     readonly looksZeroToOne: number, pixelsNotSquare: number, viewportEmpty: number;
@@ -75,8 +76,9 @@ export interface View extends Disposable {
     /** Returns the least and the greatest view depth that window depths from `lower` to `upper`, numbers from 0 to 1 as
      * a depth buffer holds them, stand for; rounded outward. */
     depths(lower: number, upper: number): [least: number, greatest: number];
-    /** Returns the window depth of a view depth, up to rounding; NaN for an infinite view depth. */
-    windowDepth(depth: number): number;
+    /** Returns the window depth of an image point, as project() returns it, up to rounding; NaN for an infinite view
+     * depth. x and y matter with an oblique near plane alone. */
+    windowDepth(image: Numbers): number;
     /** The constants `grid` (four numbers) and `corner` (two) of the shader text, as in its uniform block. */
     gridConstants(cornerX?: number, cornerY?: number): Uint32Array;
     /** The constants `image` and `depths` of the shader text's view check. */
@@ -308,9 +310,11 @@ export interface ReduceOptions {
     language: Language;
     fragment?: boolean;
     samples?: number;
-    format?: 'float32' | 'unorm24' | 'unorm16';
+    /** 'view-depth': the texture holds view depths, such as converted logarithmic ones; background is Infinity. */
+    format?: 'float32' | 'unorm24' | 'unorm16' | 'view-depth';
     reversedZ?: boolean;
     orthographic?: boolean;
+    oblique?: boolean;
     skipBackground?: boolean;
     flipY?: boolean;
     viewportCorner?: boolean;

@@ -463,8 +463,9 @@ class View extends Held {
             return [...core.copy(Float32Array, to, 8)];
         });
     }
-    windowDepth(depth) {
-        return this.#core.c.lightbin_view_window_depth(this[address], real(depth, 'depth'));
+    windowDepth(image) {
+        const core = this.#core;
+        return core.scope(c => c.lightbin_view_window_depth(this[address], core.doubles(image, 3, 'image')));
     }
     gridConstants(corner_x = 0, corner_y = 0) {
         return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_get_grid_constants,

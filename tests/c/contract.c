@@ -235,7 +235,7 @@ static void test_views(void) {
     NEEDS(lightbin_view_project(view, NULL, point), "point");
     NEEDS(lightbin_view_unproject(view, point, NULL), "point");
     NEEDS(lightbin_view_depths(NULL, 0, 1, depths), "view");
-    CHECK(isnan(lightbin_view_window_depth(NULL, 1)));
+    CHECK(isnan(lightbin_view_window_depth(NULL, point)));
     lightbin_view_destroy(view);
     lightbin_view_destroy(NULL);
 }

@@ -19,6 +19,7 @@ struct AssertionFailed : std::logic_error {
 
 #include <glm/gtc/type_ptr.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -117,21 +118,43 @@ public:
             : setup.narrow_ids                                  ? bin(narrow_, setup, *view, seen)
                                                                 : bin(wide_, setup, *view, seen);
         if (!binned) return {.by = {"error"}};
-        start(setup, snippet->text);
-        set_constants(setup, *view);
-        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles(setup).size()));
+        const auto picture = [&] {
+            start(setup, snippet->text);
+            set_constants(setup, *view);
+            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles(setup).size()));
+        };
+        picture();
+        if (setup.logarithmic) {  // the first was for its depths
+            bin(tested_, setup, *view, seen, bounds_of_logarithms(*view, *setup.logarithmic));
+            picture();
+        }
         count(setup, seen);
         return seen;
     }
 
 private:
+    // Z bounds of what was drawn, by way of a logarithmic depth buffer.
+    lightbin::ZBounds bounds_of_logarithms(const lightbin::View& view, lightbin::DepthFormat format) {
+        std::vector<float> depths(width * height);
+        glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+        const float scale = std::log2(1 + view.far_depth());
+        for (float& depth : depths) {
+            depth = std::log2(1 + view.view_depths(static_cast<double>(depth), static_cast<double>(depth)).min) / scale;
+            if (format == lightbin::DepthFormat::view_depth) depth = std::exp2(depth * scale) - 1;
+        }
+        for (std::vector<float>& side : bounds_)
+            side.resize(view.tile_count());
+        return *lightbin::reduce_depth(view, {.depth = depths, .format = format}, {bounds_[0], bounds_[1]});
+    }
+
     // Uploads the lists of lights. Returns whether there are any.
     template <lightbin::Options options>
-    bool bin(lightbin::Binner<options>& binner, const Setup& setup, const lightbin::View& view, Seen& seen) {
+    bool bin(lightbin::Binner<options>& binner, const Setup& setup, const lightbin::View& view, Seen& seen,
+             const lightbin::ZBounds& bounds = {}) {
         const auto as_is = [](const lightbin::Sphere& light) { return light; };
         const auto slices = *lightbin::Slices::exponential(16, 0.3f, 25);
         const auto grid = binner.bin(view, lightbin::world_space(setup.given_lights, setup.given_view, as_is),
-                                     lightbin::inputs_for<options>({}, slices));
+                                     lightbin::inputs_for<options>(bounds, slices));
         if (setup.looked_at && !grid) return false;
         if (grid->light_counts().rejected > 0) seen.by.insert("counts");
         if (setup.tiles_uploaded) upload(0, grid->ranges().data(), grid->ranges().size_bytes());
@@ -228,7 +251,9 @@ private:
     FrameBuffer target_{330};
     std::map<std::string, GLuint> programs_;
     std::vector<std::uint32_t> order_;  // of the lights, with z-bins
+    std::vector<float> bounds_[2];
     lightbin::Binner<> wide_;
+    lightbin::Binner<lightbin::Options{.depth_test = true}> tested_;
     lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16}> narrow_;
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}> clusters_;
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> z_bins_;

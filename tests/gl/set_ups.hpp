@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -65,6 +66,8 @@ struct Setup {
                                       .list_check = true,
                                       .window = true};
     bool narrow_ids = false;  // of the Binner
+    /// A logarithmic depth buffer that Z bounds are made of, given as such of this format: view depths are converted.
+    std::optional<lightbin::DepthFormat> logarithmic;
     bool looked_at = true;    // whether Results are
     bool ranked = true;       // z-bins: whether the shader has the lights in the order of their ranks
     bool depth_grows = true;  // away from the eye, as the shader has it
@@ -169,6 +172,8 @@ inline std::vector<Case> mistakes() {
              s.narrow_ids = true;
              s.given_lights.resize(70000);
          }},
+        {"logarithmic depth buffer, read as window depths",
+         [](Setup& s) { s.logarithmic = lightbin::DepthFormat::float32; }},
         {"Result not looked at",
          [](Setup& s) {
              s.looked_at = false;
@@ -206,6 +211,7 @@ inline std::vector<Case> right_ones() {
              s.view_options.origin = WindowOrigin::upper_left;
          }},
         {"constant tile size", [](Setup& s) { s.shader.tile_size = 8; }},
+        {"logarithmic depth buffer", [](Setup& s) { s.logarithmic = lightbin::DepthFormat::view_depth; }},
         {"four samples", [](Setup& s) { s.samples = 4; }},
         {"four samples, at pixels' centres",
          [](Setup& s) {

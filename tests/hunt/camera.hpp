@@ -75,6 +75,9 @@ inline Camera make_camera(bool ordinary, Random& random) {
         m[2][2] = scale * toward * (at_far - over_depth / far_depth);
         m[3][2] = scale * over_depth;
     }
+    if (random.one_in(5))  // an oblique near plane
+        for (const int axis : {0, 1})
+            m[axis][2] = m[axis][axis] * random.between(-0.5, 0.5);
     camera.in_float = random.coin();
     if (camera.in_float) m = glm::dmat4(glm::mat4(m));
     return camera;

@@ -121,7 +121,7 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     same(Float64Array.from(image), 'image point');
     same(Float64Array.from(view.unproject(new Float64Array(image))), 'view point');
     same(Float32Array.from(view.depths(0.25, 0.5)), 'view depths');
-    same(Float32Array.of(view.windowDepth(7)), 'window depth');
+    same(Float32Array.of(view.windowDepth([3, 4, 7])), 'window depth');
     for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
     same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
     same(view.gridConstants(5, 7), 'grid constants');
@@ -289,7 +289,6 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [viewed({clipDepth: 'webgpu'}), /'webgpu' is none of minus-one-to-one, zero-to-one$/],
             [() => lightbin.view(new Uint8Array(2 ** 28)), /^options must be an object of width/],
             [() => view.update({width: undefined}), /^options.width is missing/],
-            [() => view.windowDepth({}), /^depth: an object is no number$/],
             [() => view.depths('0', 1), /^lower: 0 is no number$/],
             [() => view.project([1, 2n, 3]), /^point: element 1 is no number$/],
             [() => view.project([1, 2]), /^point must be an array of 3/],
@@ -371,7 +370,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             ['null-argument', () => binner.bin(null, lights), /^view: /],
             ['null-argument', () => binner.bin(gone, lights), /^view: /],
             ['null-argument', () => gone.update(square), /^view: it was disposed of$/],
-            ['null-argument', () => gone.windowDepth(3), /^view: /],
+            ['null-argument', () => gone.windowDepth([1, 2, 3]), /^view: /],
             ['null-argument', () => gone.unproject([1, 2, 3]), /^view: /],
             ['null-argument', () => ended.resize(4), /^floats: it was disposed of$/],
             ['null-argument', binned({array: ended}), /^floats: it was disposed of$/],

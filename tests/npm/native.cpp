@@ -205,7 +205,7 @@ int main(int count, char** names) {
     write_block(back, sizeof back);
     succeed(lightbin_view_depths(view, 0.25, 0.5, depths));
     write_block(depths, sizeof depths);
-    write_numbers({lightbin_view_window_depth(view, 7)});
+    write_numbers({lightbin_view_window_depth(view, image)});
     for (const float depth : {-3.0f, 1.5f, 20.0f, std::numeric_limits<float>::infinity()})
         write_numbers({lightbin_slices_at(slices, depth)});
     write_numbers({lightbin_light_range(100, 0.01f), lightbin_light_window(1, 3), lightbin_light_window(5, 3)});

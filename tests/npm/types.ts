@@ -15,7 +15,7 @@ export async function use(gl: WebGL2RenderingContext) {
     const [x, y, depth] = view.project([1, 2, 3]), {longest, histogram} = grid.listLengths();
     gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + histogram[longest]);
     gl.bufferData(gl.ARRAY_BUFFER, grid.countEntries(), view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);
-    console.log(await lightbin.viewText(view), view.windowDepth(depth), lightbin.lightWindow(1, 2));
+    console.log(await lightbin.viewText(view), view.windowDepth([0, 0, depth]), lightbin.lightWindow(1, 2));
     // @ts-expect-error
     grid.append([grid]);
     const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});

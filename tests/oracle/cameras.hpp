@@ -4,6 +4,7 @@
 
 #include "../../bench/exact/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -23,7 +24,29 @@ struct Lens {
     double factor = 1;  ///< times the whole matrix
     bool flip_x = false, flip_y = false;
     bool doubles = false;
+    /// An oblique near plane in view space, points with x px + y py + z pz + w >= 0 being drawn; none if w is 0.
+    double plane[4] = {};
 };
+
+/// Puts the lens' oblique near plane in the z row of its matrix, with the far plane through the corner farthest from it
+/// of the old far side: E. Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005.
+inline void set_oblique_plane(Matrix& m, const Lens& lens) {
+    const double(&plane)[4] = lens.plane;
+    double scale = 0;
+    for (const double x : {lens.left, lens.right})
+        for (const double y : {lens.bottom, lens.top}) {
+            const double s = lens.looks_up_z ? 1 : -1,
+                         far_plane = std::isinf(lens.far_plane) ? 1e5 * lens.near_plane : lens.far_plane,
+                         w = lens.orthographic ? 1 : far_plane;
+            const double inside = plane[0] * x * w + plane[1] * y * w + plane[2] * s * far_plane + plane[3];
+            scale = std::max(scale, inside / w);
+        }
+    const double depths = lens.zero_to_one ? 1 : 2, sign = lens.reversed ? -1 : 1;
+    for (int i = 0; i < 4; ++i) {
+        const double at_near = lens.reversed ? 1 : lens.zero_to_one ? 0 : -1;
+        m[i][2] = at_near * m[i][3] + sign * depths / scale * plane[i];
+    }
+}
 
 inline Matrix projection(const Lens& lens) {
     const double n = lens.near_plane, f = lens.far_plane, s = lens.looks_up_z ? 1 : -1;
@@ -50,6 +73,7 @@ inline Matrix projection(const Lens& lens) {
         m[2][1] = (lens.flip_y ? 1 : -1) * s * shift_y;
         m[2][3] = s;
     }
+    if (lens.plane[3] != 0) set_oblique_plane(m, lens);
     for (auto& column : m.entry)
         for (double& entry : column) {
             entry *= lens.factor;
@@ -126,6 +150,12 @@ inline Lens box_lens(double aspect, double half_height) {
     return lens;
 }
 
+/// Sets an oblique near plane of a normal (x, y, and along depth) and a distance.
+inline void oblique(Lens& lens, double x, double y, double depth, double w) {
+    const double plane[4] = {x, y, lens.looks_up_z ? depth : -depth, w};
+    std::copy_n(plane, 4, lens.plane);
+}
+
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Returns a symmetric lens with this angle, or an orthographic box of this height, changed by `change`.
@@ -175,6 +205,15 @@ inline const std::vector<CameraKind>& camera_kinds() {
          }>},
         {"orthographic_reversed", box<25, [](Lens& lens) {
              lens.reversed = lens.zero_to_one = true, lens.factor = 5;
+         }>},
+        {"oblique", symmetric<60, [](Lens& lens) { oblique(lens, 0, 0.8, 0.6, -1); }>},
+        {"oblique_reversed", symmetric<75, [](Lens& lens) {
+             lens.zero_to_one = lens.reversed = lens.looks_up_z = true, lens.far_plane = infinite;
+             oblique(lens, -0.5, 0.25, 1, -0.3);
+         }>},
+        {"oblique_orthographic", box<25, [](Lens& lens) {
+             lens.left += 30, lens.right += 30;
+             oblique(lens, 0.25, -0.125, 1, -7);
          }>},
     };
     return kinds;

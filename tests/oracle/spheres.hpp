@@ -3,6 +3,7 @@
 // tests then use the rounded float sphere.
 #pragma once
 
+#include "../../bench/exact/oracle.hpp"
 #include "../split_mix.hpp"
 #include "cameras.hpp"
 
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -60,12 +62,10 @@ public:
         sign_[2] = (along > 0) != (orthographic && camera.reversed) ? 1 : -1;
         sign_[0] = m[0][0] < 0 ? -1 : 1;
         sign_[1] = (m[1][1] < 0 ? -1 : 1) * up(1);
-        const double low = plane(camera.zero_to_one ? 0 : -1), high = plane(1);
-        const bool low_is_near = low >= 0 && (low < high || high < 0);
-        near_plane = orthographic ? std::min(low, high) : (low_is_near ? low : high);
-        far_plane = orthographic ? std::max(low, high) : (low_is_near ? high : low);
-        if (!(far_plane > near_plane) || (!orthographic && far_plane > 1e13 * near_plane))
-            far_plane = 1e7 * near_plane;  // at infinity, or as good as
+        const Depths range = Oracle(camera).range();
+        near_plane = nearly(*range.min);
+        far_plane = range.max ? nearly(*range.max) : std::numeric_limits<double>::infinity();
+        if (!orthographic && far_plane > 1e13 * near_plane) far_plane = 1e7 * near_plane;  // at infinity, or as good as
         unit = orthographic ? (at(1, camera.height, 0) - at(1, 0, 0)) / 64 : near_plane;
     }
 
@@ -125,10 +125,6 @@ public:
 private:
     double up(int axis) const { return axis == 1 && camera.upper_left ? -1 : 1; }
     double ndc(int axis, double pixel) const { return 2 * pixel / side(axis) - 1; }
-    double plane(double ndc_z) const {
-        const Matrix& m = camera.m;
-        return sign_[2] * (ndc_z * m[3][3] - m[3][2]) / (m[2][2] - ndc_z * m[2][3]);
-    }
     double sign_[3];
 };
 

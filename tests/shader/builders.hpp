@@ -25,8 +25,9 @@ inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLang
     for (const bool fragment : {false, true})
         for (const int samples : {1, 4})
             for (const DepthFormat format :
-                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
-                for (unsigned switches = 0; switches < 64; ++switches) {
+                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16, DepthFormat::view_depth})
+                for (unsigned switches = 0; switches < 128; ++switches) {
+                    if ((switches & 64) != 0 && (switches & 0x28) != 0) continue;  // a quarter of the oblique ones
                     ReduceOptions options;
                     options.language = language;
                     options.fragment = fragment;
@@ -38,27 +39,30 @@ inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLang
                     options.flip_y = switches & 8;
                     options.viewport_corner = switches & 16;
                     options.push_constants = switches & 32;
+                    options.oblique = switches & 64;
                     options.prefix = prefixes[switches % std::size(prefixes)];
                     if (reduce_shader(options)) every.push_back(options);
                 }
     return every;
 }
 
-// Number of cameras: 0 is a perspective, 1 has reversed Z and an infinite far plane, 2 is orthographic.
-constexpr int camera_count = 3;
+// Cameras: 0 perspective, 1 reversed and infinite, 2 orthographic; with oblique near planes 3 perspective, 4 reversed,
+// 5 orthographic.
+constexpr int camera_count = 3, camera_count_with_oblique = 6;
 
 inline lightbin::View builder_view(int camera, int width, int height, int tile_size, bool flip_y) {
     using namespace lightbin;
-    constexpr float perspective[4][4] = {
-        {1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0.1f, -0.2f, -1.002f, -1}, {0, 0, -0.2002f, 0}};
-    constexpr float reversed[4][4] = {{1.2f, 0, 0, 0}, {0, -1.7f, 0, 0}, {0, 0, 0, -1}, {0, 0, 0.1f, 0}};
-    constexpr float orthographic[4][4] = {
-        {0.06f, 0, 0, 0}, {0, 0.08f, 0, 0}, {0, 0, -0.02f, 0}, {0.1f, 0, -1, 1}};
-    const auto& matrix = camera == 0 ? perspective : camera == 1 ? reversed : orthographic;
+    constexpr float matrices[camera_count_with_oblique][4][4] = {
+        {{1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0.1f, -0.2f, -1.002f, -1}, {0, 0, -0.2002f, 0}},
+        {{1.2f, 0, 0, 0}, {0, -1.7f, 0, 0}, {0, 0, 0, -1}, {0, 0, 0.1f, 0}},
+        {{0.06f, 0, 0, 0}, {0, 0.08f, 0, 0}, {0, 0, -0.02f, 0}, {0.1f, 0, -1, 1}},
+        {{1.2f, 0, 0.2f, 0}, {0, 1.7f, 1.1f, 0}, {0.1f, -0.2f, -0.8f, -1}, {0, 0, -0.5f, 0}},
+        {{1.2f, 0, -0.1f, 0}, {0, -1.7f, 0.2f, 0}, {0, 0, 0.1f, -1}, {0, 0, 0.1f, 0}},
+        {{0.06f, 0, 0.01f, 0}, {0, 0.08f, -0.02f, 0}, {0, 0, -0.02f, 0}, {0.1f, 0, -1, 1}}};
     ViewOptions options{.tile_size = tile_size};
-    if (camera == 1) options.clip_depth = ClipDepth::zero_to_one;
+    if (camera == 1 || camera == 4) options.clip_depth = ClipDepth::zero_to_one;
     if (flip_y) options.origin = WindowOrigin::upper_left;
-    return *View::from_projection(matrix, {width, height}, options);
+    return *View::from_projection(matrices[camera], {width, height}, options);
 }
 
 class BuilderNumbers {
@@ -142,6 +146,9 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     const View view = builder_view(camera, width, height, tile_size, options.flip_y);
     options.reversed_z = view.reversed_z();
     options.orthographic = view.orthographic();
+    options.oblique = view.oblique();
+    const bool converted = options.format == DepthFormat::view_depth;
+    const float background = converted ? std::numeric_limits<float>::infinity() : view.reversed_z() ? 0.0f : 1.0f;
     const int corner_x = options.viewport_corner ? 3 : 0, corner_y = options.viewport_corner ? 5 : 0;
     const int full_width = width + corner_x, full_height = height + corner_y;
     const auto samples = static_cast<std::size_t>(options.samples);
@@ -156,7 +163,8 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
         for (int x = 0; x < width; ++x)
             for (std::size_t s = 0; s < samples; ++s) {
                 const int kind = (x / 7 * 5 + y / 5 * 3) % 8;
-                float value = kind == 0   ? (view.reversed_z() ? 0.0f : 1.0f)
+                float value = kind == 0   ? background
+                              : converted ? 1 / number(0, 0.5f)
                               : kind == 1 ? number(0, 1)
                               : kind == 2 ? 1 - number(0, 1e-4f)
                                           : number(0, 1e-3f);
@@ -181,7 +189,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     data.put("depth", texels);
     data.put("z_bounds", std::vector<float>(2 * (std::max)(min.size(), std::size_t{2}), -1.0f));
     const ReduceConstants constants = reduce_constants(view, corner_x, corner_y);
-    constexpr const char* names[] = {"grid", "planes", "corner"};
+    constexpr const char* names[] = {"grid", "planes", "corner", "tilt"};
     data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
     Job job = builder_job(*reduce_shader(options), options.language, options.prefix, data, "z_bounds");
     for (Input& input : job.inputs)
@@ -207,7 +215,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
             for (std::size_t s = 0; s < samples; ++s) {
                 const float value = depth[static_cast<std::size_t>(y * width + x) * samples + s];
                 const auto tile = static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
-                if (options.skip_background && value == (view.reversed_z() ? 0.0f : 1.0f)) continue;
+                if (options.skip_background && value == background) continue;
                 const bool unknown = std::isnan(value);
                 lower[tile] = (std::min)(lower[tile], unknown ? 0.0 : static_cast<double>(value));
                 upper[tile] = (std::max)(upper[tile], unknown ? 1.0 : static_cast<double>(value));
@@ -215,6 +223,23 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     for (std::size_t tile = 0; tile < min.size(); ++tile) {
         if (min[tile] > max[tile]) {  // nothing is drawn
             job.within.insert(job.within.end(), {{min[tile], min[tile]}, {max[tile], max[tile]}});
+            continue;
+        }
+        if (converted || view.oblique()) {
+            // By so much of the depth, or of one over it.
+            double least = static_cast<double>(min[tile]) * (min[tile] < 0 ? 1 + 0x1p-17 : 1 - 0x1p-17),
+                   most = static_cast<double>(max[tile]) * (max[tile] < 0 ? 1 - 0x1p-17 : 1 + 0x1p-17);
+            const double off = converted ? 0
+                                         : 3 * (static_cast<double>(constants.margin) +
+                                                static_cast<double>(constants.slope) * step);
+            if (view.orthographic()) {
+                least -= off, most += off;
+            } else if (!converted) {
+                least = 1 / (1 / least + off);
+                most = 1 / most > off ? 1 / (1 / most - off) : static_cast<double>(HUGE_VALF);
+            }
+            job.within.push_back({static_cast<float>(least), min[tile]});
+            job.within.push_back({max[tile], static_cast<float>(most)});
             continue;
         }
         const auto widened =
@@ -238,9 +263,9 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
     for (const bool fragment : {false, true})
         for (const int samples : {1, 4})
             for (const DepthFormat format :
-                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
+                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16, DepthFormat::view_depth})
                 for (const bool skip : {false, true})
-                    for (int camera = 0; camera < camera_count; ++camera) {
+                    for (int camera = 0; camera < camera_count_with_oblique; ++camera) {
                         ReduceOptions options;
                         options.language = language;
                         options.fragment = fragment;
@@ -253,7 +278,9 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
                         struct Size {
                             int width, height, tile_size;
                         };
-                        for (const Size& size : {Size{1, 1, 64}, Size{33, 17, 7}, Size{333, 217, 16}})
+                        // Four, so that each third of the jobs has all of them.
+                        for (const Size& size :
+                             {Size{1, 1, 64}, Size{33, 17, 7}, Size{333, 217, 16}, Size{100, 60, 32}})
                             jobs.push_back(
                                 reduce_job(options, camera, size.width, size.height, size.tile_size));
                     }

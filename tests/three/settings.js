@@ -33,7 +33,7 @@ function mirror(Mirror, size, is_lying, ...place) {
     const object = new Mirror(new THREE.PlaneGeometry(...size), {
         textureWidth: 150, textureHeight: 100, waterNormals: still, sunColor: 0, waterColor: 0});
     if (is_lying) object.rotation.x = -Math.PI / 2;
-    return {...standing(object, ...place), says: ['oblique']};
+    return standing(object, ...place);
 }
 
 /// A screen that shows the scene from behind, and on that a screen with the outer camera's picture.

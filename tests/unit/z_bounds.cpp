@@ -1,4 +1,5 @@
-// Sizes of buffers for reduce_depth(). tests/oracle/depth.cpp compares its depth bounds with exact ones.
+// reduce_depth(): sizes of its buffers, and buffers of view depths. tests/oracle/depth.cpp compares the bounds of window
+// depths with exact ones.
 #include "scene.hpp"
 
 #include <limits>
@@ -67,4 +68,76 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
     CHECK(code({.depth = depth, .samples = -1}, min, max) == ErrorCode::samples_out_of_range);
     CHECK(code({.depth = depth}, std::span(min).first(11), max) == ErrorCode::z_bounds_too_small);
     CHECK(code({.depth = depth}, min, std::span(max).first(11)) == ErrorCode::z_bounds_too_small);
+}
+
+TEST_CASE("a buffer of view depths is taken as it is") {
+    const View view = test::view({64, 32}, 32);
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    std::vector<float> depth(64 * 32, 7.0f);
+    depth[0] = 5, depth[64 + 1] = 9, depth[40] = inf, depth[41] = -3;
+    Reduced reduced = reduce(view, {.depth = depth, .format = DepthFormat::view_depth, .skip_background = true});
+    constexpr float widened = 0x1p-18f;
+    CHECK(reduced.min[0] <= 5 * (1 - widened));
+    CHECK(reduced.min[0] >= 5 * (1 - 2 * widened));
+    CHECK(reduced.max[0] >= 9 * (1 + widened));
+    CHECK(reduced.max[0] <= 9 * (1 + 2 * widened));
+    CHECK(reduced.min[1] <= -3 * (1 + widened));
+    CHECK(reduced.max[1] <= 7 * (1 + 2 * widened));
+    reduced = reduce(view, {.depth = depth, .format = DepthFormat::view_depth});
+    CHECK(reduced.max == std::vector<float>{reduced.max[0], inf});
+    depth[2] = std::nanf("");
+    reduced = reduce(view, {.depth = depth, .format = DepthFormat::view_depth});
+    CHECK(reduced.min[0] == -inf);
+    CHECK(reduced.max[0] == inf);
+    const std::vector<float> nothing(64 * 32, inf);
+    reduced = reduce(view, {.depth = nothing, .format = DepthFormat::view_depth, .skip_background = true});
+    CHECK(reduced.min == std::vector<float>{inf, inf});
+    CHECK(reduced.max == std::vector<float>{-inf, -inf});
+}
+
+// As it was reported: its depths taken for window depths of the matrix, most lights are missed where they shine.
+TEST_CASE("a logarithmic depth buffer, converted to view depths, misses no light") {
+    constexpr int width = 640, height = 360;
+    const View view = *View::from_projection(glm::perspective(1.0471976f, 16 / 9.0f, 1.0f, 1000.0f), {width, height});
+    const auto surface = [](int x, int y) { return 20 + 17 * std::sin(9.0 * x / width) * std::cos(5.0 * y / height); };
+    std::vector<float> logarithmic, converted;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double steps = 0x1p24 - 1;
+            const double window = std::round(std::log2(1 + surface(x, y)) / std::log2(1001.0) * steps) / steps;
+            logarithmic.push_back(static_cast<float>(window));
+            converted.push_back(std::exp2(logarithmic.back() * std::log2(1001.0f)) - 1);
+        }
+    const auto point_at = [&](int x, int y) { return view.view_point({x + 0.5, y + 0.5, surface(x, y)}); };
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> radius(0.5f, 3);
+    std::vector<Sphere> lights;
+    for (int i = 0; i < 300; ++i) {
+        const ViewPoint at = point_at(static_cast<int>(random() % width), static_cast<int>(random() % height));
+        lights.push_back(
+            {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), radius(random)});
+    }
+    // How many pairs of a pixel and a light that reaches it the lists lack.
+    std::size_t pairs = 0;
+    const auto missed = [&](const std::vector<float>& depth, DepthFormat format) {
+        const Reduced bounds = reduce(view, {.depth = depth, .format = format});
+        const auto lists = test::lists<Options{.depth_test = true}>(view, lights, {bounds.min, bounds.max});
+        std::size_t count = pairs = 0;
+        for (int y = 0; y < height; y += 4)
+            for (int x = 0; x < width; x += 4)
+                for (std::uint32_t id = 0; id < lights.size(); ++id) {
+                    const Sphere& light = lights[id];
+                    const ViewPoint at = point_at(x, y);
+                    if (std::hypot(at.x - static_cast<double>(light.x), at.y - static_cast<double>(light.y),
+                                   at.z - static_cast<double>(light.z)) > static_cast<double>(light.radius))
+                        continue;
+                    const auto& list = lists[static_cast<std::size_t>(y / 32 * view.tiles_x() + x / 32)];
+                    ++pairs;
+                    count += !std::binary_search(list.begin(), list.end(), id);
+                }
+        return count;
+    };
+    CHECK(missed(converted, DepthFormat::view_depth) == 0);
+    CHECK(pairs > 20000);
+    CHECK(missed(logarithmic, DepthFormat::unorm24) > pairs / 2);
 }

@@ -121,7 +121,7 @@ lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_
                       summary.orthographic, summary.reversed_z, of.near_depth(), of.far_depth(), summary.x_flipped,
                       summary.y_flipped, summary.looks_down_negative_z, summary.looks_transposed,
                       summary.looks_like_view_matrix, summary.looks_turned, summary.looks_behind,
-                      summary.looks_zero_to_one, summary.pixels_not_square, summary.viewport_empty},
+                      summary.looks_zero_to_one, summary.pixels_not_square, summary.viewport_empty, summary.oblique},
                      info);
     });
 }
@@ -160,8 +160,9 @@ lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, do
     });
 }
 
-float lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
-    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<float>::quiet_NaN();
+float lightbin_view_window_depth(const lightbin_view* view, const double* image) {
+    if (view == nullptr || image == nullptr) return std::numeric_limits<float>::quiet_NaN();
+    return view->value.window_depth({image[0], image[1], image[2]});
 }
 
 #if !defined(LIGHTBIN_WITHOUT_SLICES)

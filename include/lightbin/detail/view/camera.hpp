@@ -39,5 +39,8 @@ struct Camera {
 
 const Camera& camera_of(const View& view);
 
+struct Projection;
+const Projection& projection_of(const View& view);
+
 }  // namespace detail
 }}  // namespace lightbin

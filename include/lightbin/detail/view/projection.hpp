@@ -13,11 +13,53 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// What the terms of x and y of an oblique near plane add to the depth map of one line of sight, or the range of this
+/// for many, rounded outward.
+struct Tilt {
+    double low = 0, high = 0;
+};
+
 /// Maps view depth d to normalized device depth and back:  ndc = (z_scale d + z_offset) / (w_scale d + w_offset).
+///
+/// With an oblique near plane (Lengyel, "Oblique View Frustum Depth Projection and Clipping", 2005) each line of sight
+/// has a map of its own: along it, x and y grow with d in a perspective view, and are constant in an orthographic one,
+/// so that the matrix' terms of x and y add to z_scale or to z_offset. These two are those of the image's centre then.
 struct DepthMap {
     double z_scale = 0, z_offset = 0, w_scale = 0, w_offset = 0;
+    /// What half of the image's width, or height, adds on the way right, or to greater rows: 0 unless oblique.
+    double tilt_x = 0, tilt_y = 0;
+    double tilt_error = 0;     ///< a bound on the rounding error of all that is added in tilted(), and of tilt_at()
     bool reversed = false;     ///< reversed Z: the near plane has the larger device (NDC) depth
     bool zero_to_one = false;  ///< device (NDC) depth runs from 0 to 1, not from -1 to 1
+
+    bool oblique() const { return tilt_x != 0 || tilt_y != 0; }
+
+    /// Adds what an entry of the matrix' z row, `z`, makes of an image axis with the entries p, q and w, which
+    /// Projection::set_axis() explains. A coordinate is  c = (ndc w - q) / p.
+    void add_tilt(double& tilt, double z, double p, double q, double w) {
+        if (z == 0) return;
+        double& base = w_scale != 0 ? z_scale : z_offset;
+        tilt = z / p * w;
+        // Up to 11 roundings of 2^-53, none of a sum greater than this, lie between the matrix and the tilt at a point.
+        tilt_error += 0x1p-49 * (abs_of(base) + abs_of(tilt) + abs_of(z / p * q));
+        base -= z / p * q;
+    }
+
+    /// Returns the tilt at a point of the image: x and y run from -1 to 1 across it.
+    double tilt_at(double x, double y) const { return tilt_x * x + tilt_y * y; }
+    /// Returns the tilts at all points up to `reach_x` and `reach_y` away from a point: by default, in the whole image.
+    Tilt tilts_around(double x = 0, double y = 0, double reach_x = 1, double reach_y = 1) const {
+        const double tilt = tilt_at(x, y),
+                     reach = abs_of(tilt_x) * reach_x + abs_of(tilt_y) * reach_y + tilt_error;
+        return {tilt - reach, tilt + reach};
+    }
+
+    /// Returns the map of the lines of sight that have a tilt.
+    DepthMap tilted(double tilt) const {
+        DepthMap map = *this;
+        (w_scale != 0 ? map.z_scale : map.z_offset) += tilt;
+        return map;
+    }
 
     /// Device depth of a window depth, which runs from 0 to 1.
     double device_depth(double window) const { return zero_to_one ? window : 2 * window - 1; }
@@ -46,16 +88,27 @@ struct DepthMap {
         return top / bottom * (1.0 + (top < 0 ? -outward : outward) * 0x1p-51);
     }
 
-    // View depths of the planes, not rounded outward.
-    double near_plane() const { return view_depth(device_depth(reversed ? 1 : 0), 0); }
-    double far_plane() const { return view_depth(device_depth(reversed ? 0 : 1), 0); }
+    /// Finds the least and the greatest view depth of all points whose window depth lies in [lower, upper], rounded
+    /// outward, on lines of sight with such tilts. A larger tilt brings a point of the same window depth nearer, or
+    /// takes it farther away with reversed Z.
+    void view_depths(double lower, double upper, const Tilt& tilt, float& least, float& greatest) const {
+        least = float_below(nearest(reversed ? upper : lower, tilt, -1));
+        greatest = float_above(farthest(reversed ? lower : upper, tilt, +1));
+    }
 
-    /// Least and greatest view depth of all points whose window depth lies in [lower, upper], rounded outward.
-    void view_depths(double lower, double upper, float& least, float& greatest) const {
-        least = float_below(view_depth(device_depth(reversed ? upper : lower), -1));
-        greatest = float_above(view_depth(device_depth(reversed ? lower : upper), +1));
+    // View depths of the nearest and the farthest point of a window depth, moved as by view_depth().
+    double nearest(double window, const Tilt& tilt, int direction) const {
+        return tilted(reversed ? tilt.low : tilt.high).view_depth(device_depth(window), direction);
+    }
+    double farthest(double window, const Tilt& tilt, int direction) const {
+        return tilted(reversed ? tilt.high : tilt.low).view_depth(device_depth(window), direction);
     }
 };
+
+/// Whether a perspective matrix looks transposed: the 1 or -1 of its w row's z entry is in the w entry of its z row.
+inline bool one_is_transposed(const Matrix& m) {
+    return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
+}
 
 /// Returns why a matrix is no supported kind of projection, judged by which entries are zero, or nothing if it is one.
 inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
@@ -67,13 +120,9 @@ inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     if (perspective && (m[3][0] != 0 || m[3][1] != 0)) return ErrorCode::eye_not_at_origin;
     if (m[1][0] != 0 || m[0][1] != 0) return ErrorCode::image_axes_rotated;
     if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return ErrorCode::image_axes_rotated;
-    if (m[0][2] != 0 || m[1][2] != 0) return ErrorCode::oblique_depth;
+    const bool oblique = m[0][2] != 0 || m[1][2] != 0;
+    if (perspective && oblique && one_is_transposed(m)) return ErrorCode::projection_transposed;
     return {};
-}
-
-/// Whether a perspective matrix looks transposed: the 1 or -1 of its w row's z entry is in the w entry of its z row.
-inline bool one_is_transposed(const Matrix& m) {
-    return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
 }
 
 /// A View's projection: a matrix, and what was derived from it for a viewport and a tile size.
@@ -112,16 +161,20 @@ struct Projection {
         return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80;
     }
 
-    /// Sets the camera's near and far depth. Returns why they are refused, or nothing.
+    // View depths of the nearest and the farthest point of the clip region, not rounded outward.
+    double nearest() const { return depth.nearest(depth.reversed ? 1 : 0, depth.tilts_around(), 0); }
+    double farthest() const { return depth.farthest(depth.reversed ? 0 : 1, depth.tilts_around(), 0); }
+
+    /// Sets the camera's near and far depth: those of the clip region. Returns why they are refused, or nothing.
     std::optional<ErrorCode> set_depth_range() {
-        depth.view_depths(0, 1, camera.near_depth, camera.far_depth);
+        depth.view_depths(0, 1, depth.tilts_around(), camera.near_depth, camera.far_depth);
         camera.min_float_depth = max_of(float_safe_min, camera.near_depth);
         if (camera.orthographic) {
             if (is_finite(camera.near_depth) && is_finite(camera.far_depth)) return {};
             return ErrorCode::depth_range_not_finite;
         }
         if (camera.near_depth >= FLT_MIN && camera.near_depth < camera.far_depth) return {};
-        const bool too_close = depth.near_plane() > 0 && camera.near_depth < FLT_MIN;
+        const bool too_close = nearest() > 0 && camera.near_depth < FLT_MIN;
         return too_close ? ErrorCode::near_plane_too_close : ErrorCode::no_near_plane;
     }
 
@@ -137,9 +190,7 @@ struct Projection {
         const Matrix& m = matrix;
         if (!finite(m)) return ErrorCode::matrix_not_finite;
         if (const auto wrong = wrong_shape(m)) {
-            const bool is_transposed =
-                !wrong_shape(transposed(m)) && (*wrong != ErrorCode::oblique_depth || one_is_transposed(m));
-            return is_transposed ? ErrorCode::projection_transposed : *wrong;
+            return wrong_shape(transposed(m)) ? *wrong : ErrorCode::projection_transposed;
         }
         const double w_z = m[2][3], w_1 = m[3][3];
         const bool orthographic = camera.orthographic = w_z == 0;
@@ -162,6 +213,8 @@ struct Projection {
         depth.z_offset = m[3][2];
         depth.w_scale = orthographic ? 0 : w;
         depth.w_offset = orthographic ? w : 0;
+        depth.add_tilt(depth.tilt_x, m[0][2], m[0][0], offset_x, w);
+        depth.add_tilt(depth.tilt_y, m[1][2], up * m[1][1], up * offset_y, w);
         depth.reversed = orthographic ? reversed_z : depth.z_offset > 0;
         return set_depth_range();
     }
@@ -182,14 +235,21 @@ struct Projection {
         // On a plane of equal depth the image is 2 w / m[0][0] wide and 2 w / m[1][1] high.
         const double aspect = abs_of(m[1][1] / m[0][0]);
         const auto is_one = [](double x) { return abs_of(x) == 1; };
-        const bool never_minus_one = !flat && depth.reversed && !depth.zero_to_one &&
+        const bool never_minus_one = !flat && !depth.oblique() && depth.reversed && !depth.zero_to_one &&
                                      depth.z_scale + 0.999 * depth.w_scale > 0;
         const double width_off = abs_of(aspect * height - width);
+        // The near plane is where device depth has its near end: clip z is so many times clip w.
+        const double near_end = depth.device_depth(depth.reversed ? 1 : 0);
+        double plane[4];
+        for (int i = 0; i < 4; ++i)
+            plane[i] = (depth.reversed ? -1 : 1) * (m[i][2] - near_end * m[i][3]);
+        const double length = root_of(plane[0] * plane[0] + plane[1] * plane[1] + plane[2] * plane[2]);
         // clang-format off
         return {.orthographic = flat,
                 .x_size = size(0), .y_size = size(1), .aspect = aspect,
-                .near_depth = depth.near_plane(), .far_depth = depth.far_plane(),
-                .looks_down_negative_z = camera.z_sign < 0, .reversed_z = depth.reversed,
+                .near_depth = nearest(), .far_depth = farthest(),
+                .looks_down_negative_z = camera.z_sign < 0, .reversed_z = depth.reversed, .oblique = depth.oblique(),
+                .near_plane = {plane[0] / length, plane[1] / length, plane[2] / length, plane[3] / length},
                 .x_flipped = m[0][0] < 0, .y_flipped = m[1][1] < 0,
                 .width = width, .height = height, .tile_size = tile_size,
                 .looks_transposed = !flat && one_is_transposed(m),
