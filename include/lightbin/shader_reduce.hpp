@@ -28,7 +28,7 @@ struct ReduceOptions {
 /// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout;
 /// without viewport_corner, its first 32 bytes.
 struct ReduceConstants {
-    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    std::uint32_t tile_size, tiles_x, width, height;  ///< grid, as in GridConstants
     float far_end, slope, margin, unused;             ///< planes
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused_corner[2] = {};

@@ -35,8 +35,8 @@ constexpr const char* to_string(DepthFormat format) {
     return detail::name_at(format, {"float32", "unorm24", "unorm16"});
 }
 
-/// A depth buffer in main memory that covers the view's viewport and nothing else. Samples are window depths from 0 to
-/// 1, as glReadPixels returns them.
+/// A depth buffer in main memory that covers the view's viewport and nothing else; with a turned view it is turned, as
+/// drawn. Samples are window depths from 0 to 1, as glReadPixels returns them.
 struct DepthBuffer {
     /// Rows of pixels from the view's window origin on. The samples of one pixel are next to each other.
     std::span<const float> depth = {};
@@ -107,20 +107,24 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const float skipped = !buffer.skip_background  ? std::numeric_limits<float>::quiet_NaN()
                           : view.reversed_z() ? 0.0f
                                               : 1.0f;
-    // A tile larger than the viewport is treated as one of its size, so that the products below do not overflow.
-    const std::size_t size = static_cast<std::size_t>(
-        detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
-    const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
-    const std::size_t height = static_cast<std::size_t>(viewport.height);
+    // Tiles follow each other across the viewport, which with a turned projection is down a column of tiles.
+    const detail::Camera& camera = detail::camera_of(view);
+    const detail::TileSplit &across = (view.turned() ? camera.y : camera.x).split,
+                            &down = (view.turned() ? camera.x : camera.y).split;
+    const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x()), next_across = view.turned() ? tiles_x : 1,
+                      next_down = view.turned() ? 1 : tiles_x;
     isa = machine_isa(isa);
-    for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
-        const detail::DepthRows samples = {buffer.depth.data() + y * pitch, pitch,
-                                           detail::min_of(size, height - y), row};
+    for (int tile_row = 0; tiles > 0 && tile_row < down.count(); ++tile_row) {
+        const auto first = static_cast<std::size_t>(down.first_pixel(tile_row)),
+                   end = static_cast<std::size_t>(down.first_pixel(tile_row + 1));
+        const float* const begin = buffer.depth.data() + (first < end ? first : 0) * pitch;
         detail::reduce_tile_row(
-            isa, samples, size * samples_a_pixel, skipped, [&](std::size_t tile, detail::Extremes range) {
+            isa, {begin, pitch, end - first, row}, across, samples_a_pixel, skipped,
+            [&](std::size_t tile, detail::Extremes range) {
                 const DepthInterval depths = detail::fragment_depths(view, range, buffer.format);
-                if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
-                if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
+                const std::size_t at = static_cast<std::size_t>(tile_row) * next_down + tile * next_across;
+                if (!out.min.empty()) out.min[at] = depths.min;
+                if (!out.max.empty()) out.max[at] = depths.max;
             });
     }
     const auto given = [&](std::span<float> side) {

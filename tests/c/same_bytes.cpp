@@ -380,7 +380,7 @@ TEST_CASE("C: a view knows what it knows in C++") {
     const lightbin_view_info expected = {
         sizeof info, 640, 360, 24, cpp_view.tiles_x(), cpp_view.tiles_y(), false, false, cpp_view.near_depth(),
         cpp_view.far_depth(), summary.x_flipped, summary.y_flipped, true, summary.looks_transposed, false, false,
-        summary.looks_behind, summary.looks_zero_to_one, summary.pixels_not_square, false};
+        summary.looks_behind, summary.looks_zero_to_one, summary.pixels_not_square, false, false};
     CHECK(same(info, expected));
     char line[600];
     lightbin_view_text(view.get(), line, sizeof line);
@@ -441,6 +441,9 @@ TEST_CASE("C: shader texts are those of C++, in each language") {
         }
     auto plain = sized<lightbin_snippet_options>();  // all 0: the defaults
     compare_shaders(shader_snippet({}), lightbin_shader_snippet, plain);
+    plain.columns_and_rows = 1, plain.turned = 1;
+    compare_shaders(shader_snippet({.columns_and_rows = true, .turned = true}), lightbin_shader_snippet, plain);
+    plain = sized<lightbin_snippet_options>();
     plain.slicing = LIGHTBIN_Z_BINS, plain.masks = 1;
     compare_shaders(shader_snippet({.slicing = Slicing::z_bins, .masks = true}), lightbin_shader_snippet, plain);
 
