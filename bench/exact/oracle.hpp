@@ -315,8 +315,8 @@ public:
 
     const Camera& camera() const { return camera_; }
     bool orthographic() const { return m_[2][3].is_zero(); }
-    int tiles_x() const { return (camera_.width + camera_.tile - 1) / camera_.tile; }
-    int tiles_y() const { return (camera_.height + camera_.tile - 1) / camera_.tile; }
+    int tiles_x() const { return camera_.tiles(0); }
+    int tiles_y() const { return camera_.tiles(1); }
     int depth_sign() const { return depth_sign_; }
 
     /// The depths of the whole clip volume; no maximum if it reaches to infinity.
@@ -337,8 +337,8 @@ public:
     }
 
     /// The pixel edges of the tiles [first, last), cut at the viewport.
-    Edges columns(int first, int last) const { return edges(first, last, camera_.width); }
-    Edges rows(int first, int last) const { return edges(first, last, camera_.height); }
+    Edges columns(int first, int last) const { return edges(first, last, 0); }
+    Edges rows(int first, int last) const { return edges(first, last, 1); }
 
     /// Where the view axis is in the image, in tiles from pixel 0: O in  tile = K c / d + O.
     Rational offset_x() const { return offset(0, width_); }
@@ -433,9 +433,8 @@ private:
         if (endless) range_.max.reset();
     }
 
-    Edges edges(int first, int last, int side) const {
-        return {Rational(std::min(first * camera_.tile, side)),
-                Rational(std::min(last * camera_.tile, side))};
+    Edges edges(int first, int last, int axis) const {
+        return {Rational(camera_.first_pixel(axis, first)), Rational(camera_.first_pixel(axis, last))};
     }
 
     int up(int row) const { return row == 1 && camera_.upper_left ? -1 : 1; }

@@ -70,23 +70,25 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
     }
 }
 
-/// Returns how many tiles the projection of a sphere is wide or high, whichever is more; +inf where it has no bound.
+/// Returns how many pixels the projection of a sphere is wide or high, whichever is more; +inf where it has no bound.
 ///
 /// Rounding, with u = 2^-53: a slope of tangent_slopes() has a relative error of at most 10u, and an orthographic
 /// bound, centre -+ r, of at most u. So high - low has an error of at most 12u (|low| + |high|), and 16u times this sum
-/// are added. The camera's scale, the product with it and the product with 1 + 8u have a relative error of u each,
-/// which the factor 1 + 8u covers. What clipped_slopes() finds is rounded outward.
-inline double tiles_across(const Camera& camera, const Sphere& sphere) {
+/// are added. The camera's scale, the product with it, those with pixels a tile, and the product with 1 + 8u have a
+/// relative error of u each, together 5u, which the factor 1 + 8u covers. What clipped_slopes() finds is rounded
+/// outward.
+inline double pixels_across(const Camera& camera, const Sphere& sphere) {
     const double of_sphere[] = {static_cast<double>(sphere.x), static_cast<double>(sphere.y),
                                 static_cast<double>(sphere.z), static_cast<double>(sphere.radius)};
-    double low[2], high[2], tiles = 0;
+    double low[2], high[2], pixels = 0;
     bounds_in_double(camera, of_sphere, low, high);
     for (unsigned axis = 0; axis < 2; ++axis) {
         const double width =
             high[axis] - low[axis] + rounded((abs_of(low[axis]) + abs_of(high[axis])) * 0x1p-49);
-        tiles = max_of(tiles, width * (axis == 0 ? camera.x : camera.y).scale);
+        const ImageAxis& of = axis == 0 ? camera.x : camera.y;
+        pixels = max_of(pixels, of.split.pixels_of(width * of.scale));
     }
-    return tiles * (1 + 0x1p-50);
+    return pixels * (1 + 0x1p-50);
 }
 
 }  // namespace detail
@@ -121,7 +123,6 @@ Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& 
         for (std::uint32_t i = runs[run].begin; i < runs[run].end; ++i) {
             constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
             const detail::LightExtent extent = detail::extent_of<kind>(camera, from.view_lights, from.ids[i]);
-            const double tiles = detail::tiles_across(camera, extent.sphere);
             *light++ = {from.ids[i],
                         from.x0[i],
                         from.y0[i],
@@ -129,7 +130,7 @@ Result<std::vector<LightCoverage>> coverage(const View& view, const LightRange& 
                         from.y1[i],
                         -next_above(-extent.nearest),
                         next_above(extent.farthest),
-                        detail::float_above(tiles * view.tile_size() * (1 + 0x1p-50))};
+                        detail::float_above(detail::pixels_across(camera, extent.sphere))};
         }
     });
     return found;

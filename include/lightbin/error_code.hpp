@@ -17,6 +17,8 @@ enum class ErrorCode : std::uint8_t {
     projection_transposed,
     eye_not_at_origin,
     image_axes_rotated,
+    looks_along_x,
+    looks_along_y,
     no_near_plane,
     near_plane_too_close,
     depth_range_not_finite,
@@ -24,6 +26,7 @@ enum class ErrorCode : std::uint8_t {
     image_offset_out_of_range,
     viewport_out_of_range,
     tile_size_out_of_range,
+    tile_count_out_of_range,
     // lights
     view_matrix_not_affine,
     view_matrix_transposed,
@@ -81,16 +84,20 @@ inline constexpr const char* error_sentences[] = {
     "the projection matrix has a NaN or infinite entry",
     ("the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be a "
      "positive constant alone. Pass the projection alone, not projection times view (the view matrix goes with lights "
-     "that are in world space). If depth lies along another axis than z, as with z up in Panda3D, change the axes of "
-     "both matrices"),
+     "that are in world space)"),
     ("the matrix is a projection when it is transposed: give the layout that its numbers have in memory, row major or "
      "column major"),
     ("the perspective matrix does not have its eye at the origin of view space: pass the projection alone, not "
      "projection times view (the view matrix goes with lights that are in world space)"),
     ("the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic row "
      "reads z). Pass the projection alone, not projection times view, and not the view matrix; where the projection "
-     "itself turns the image, apply that to the pixels. If depth lies along another axis than z, as with z up in "
-     "Panda3D, change the axes of both matrices"),
+     "itself turns the image by other angles than 90, 180 and 270 degrees, apply that to the pixels"),
+    ("the projection looks along x of view space, and must look along z: give its columns, and the rows of the "
+     "world-to-view matrix, in the order y, z, x, w, and lights in view space the coordinates y, z, x. But if this is "
+     "the view matrix, pass the projection in its place"),
+    ("the projection looks along y of view space, as with z up in Panda3D, and must look along z: give its columns, "
+     "and the rows of the world-to-view matrix, in the order x, z, y, w, and lights in view space the coordinates x, z, "
+     "y. But if this is the view matrix, pass the projection in its place"),
     ("the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 or "
      "less? Check the matrix's z row and the option clip_depth"),
     "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller units",
@@ -100,7 +107,9 @@ inline constexpr const char* error_sentences[] = {
     ("the projection moves the image by more than 2^80 tiles in x or y: check the x and y of the matrix's third "
      "column, or of an orthographic one's fourth"),
     "the viewport's sides must be 0 to {available} pixels, and one is {given}",
-    "the tile size must be at least 1 pixel, and is {given}",
+    "the tile size must be at least 1 pixel, and is {given}; it is 0 of a view that numbers of tiles were given for",
+    ("the options columns and rows must both be 1 to {available}, or both 0, and max_tiles 0 or more, and one is "
+     "{given}"),
     ("the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. Pass the view "
      "matrix alone, not projection times view"),
     ("the world-to-view matrix is transposed, its last column is 0 0 0 1: give the layout that its numbers have in "

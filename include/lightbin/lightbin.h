@@ -94,52 +94,55 @@ typedef enum lightbin_error {
     LIGHTBIN_PROJECTION_TRANSPOSED = 102,
     LIGHTBIN_EYE_NOT_AT_ORIGIN = 103,
     LIGHTBIN_IMAGE_AXES_ROTATED = 104,
-    LIGHTBIN_NO_NEAR_PLANE = 105,
-    LIGHTBIN_NEAR_PLANE_TOO_CLOSE = 106,
-    LIGHTBIN_DEPTH_RANGE_NOT_FINITE = 107,
-    LIGHTBIN_DEGENERATE_SCALE = 108,
-    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE = 109,
-    LIGHTBIN_VIEWPORT_OUT_OF_RANGE = 110,
-    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE = 111,
-    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE = 112,
-    LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 113,
-    LIGHTBIN_TOO_MANY_LIGHTS = 114,
-    LIGHTBIN_TOO_MANY_ENTRIES = 115,
-    LIGHTBIN_TOO_MANY_PAIRS = 116,
-    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 117,
-    LIGHTBIN_ID_BUFFER_TOO_SMALL = 118,
-    LIGHTBIN_GRIDS_DIFFER = 119,
-    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 120,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 121,
-    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 122,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL = 123,
-    LIGHTBIN_NO_SLICES = 124,
-    LIGHTBIN_SLICE_RANGE_EMPTY = 125,
-    LIGHTBIN_SLICES_DO_NOT_ASCEND = 126,
-    LIGHTBIN_TOO_MANY_CELLS = 127,
-    LIGHTBIN_TOO_FEW_WEIGHTS = 128,        /* in C++ alone */
-    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 129, /* in C++ alone */
-    LIGHTBIN_IDS_TOO_NARROW = 130,
-    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 131,
-    LIGHTBIN_CAPACITY_UNKNOWN = 132,
-    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 133,
-    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 134,
-    LIGHTBIN_NO_STORAGE_BUFFERS = 135,
-    LIGHTBIN_NO_TEXEL_BUFFERS = 136,
-    LIGHTBIN_SLOT_OUT_OF_RANGE = 137,
-    LIGHTBIN_VIEWS_OUT_OF_RANGE = 138,
-    LIGHTBIN_NO_SETS = 139,
-    LIGHTBIN_NO_PUSH_CONSTANTS = 140,
-    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 141,
-    LIGHTBIN_NO_SUCH_SLICING_SHADER = 142,
-    LIGHTBIN_NO_WAVE_OPERATIONS = 143,
-    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 144,
-    LIGHTBIN_BINDINGS_OVERLAP = 145,
-    LIGHTBIN_NOT_A_PREFIX = 146,
-    LIGHTBIN_TOO_MANY_SLICES = 147,
-    LIGHTBIN_VIEW_MATRIX_DISTORTS = 148,
-    LIGHTBIN_SCRATCH_TOO_LARGE = 149,
-    LIGHTBIN_EYE_NOT_FINITE = 150,
+    LIGHTBIN_LOOKS_ALONG_X = 105,
+    LIGHTBIN_LOOKS_ALONG_Y = 106,
+    LIGHTBIN_NO_NEAR_PLANE = 107,
+    LIGHTBIN_NEAR_PLANE_TOO_CLOSE = 108,
+    LIGHTBIN_DEPTH_RANGE_NOT_FINITE = 109,
+    LIGHTBIN_DEGENERATE_SCALE = 110,
+    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE = 111,
+    LIGHTBIN_VIEWPORT_OUT_OF_RANGE = 112,
+    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE = 113,
+    LIGHTBIN_TILE_COUNT_OUT_OF_RANGE = 114,
+    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE = 115,
+    LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 116,
+    LIGHTBIN_TOO_MANY_LIGHTS = 117,
+    LIGHTBIN_TOO_MANY_ENTRIES = 118,
+    LIGHTBIN_TOO_MANY_PAIRS = 119,
+    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 120,
+    LIGHTBIN_ID_BUFFER_TOO_SMALL = 121,
+    LIGHTBIN_GRIDS_DIFFER = 122,
+    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 123,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 124,
+    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 125,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 126,
+    LIGHTBIN_NO_SLICES = 127,
+    LIGHTBIN_SLICE_RANGE_EMPTY = 128,
+    LIGHTBIN_SLICES_DO_NOT_ASCEND = 129,
+    LIGHTBIN_TOO_MANY_CELLS = 130,
+    LIGHTBIN_TOO_FEW_WEIGHTS = 131,        /* in C++ alone */
+    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 132, /* in C++ alone */
+    LIGHTBIN_IDS_TOO_NARROW = 133,
+    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 134,
+    LIGHTBIN_CAPACITY_UNKNOWN = 135,
+    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 136,
+    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 137,
+    LIGHTBIN_NO_STORAGE_BUFFERS = 138,
+    LIGHTBIN_NO_TEXEL_BUFFERS = 139,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 140,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 141,
+    LIGHTBIN_NO_SETS = 142,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 143,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 144,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 145,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 146,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 147,
+    LIGHTBIN_BINDINGS_OVERLAP = 148,
+    LIGHTBIN_NOT_A_PREFIX = 149,
+    LIGHTBIN_TOO_MANY_SLICES = 150,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 151,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 152,
+    LIGHTBIN_EYE_NOT_FINITE = 153,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -221,7 +224,10 @@ typedef struct lightbin_view_options {
     int32_t origin;     /* a lightbin_window_origin */
     /* Not 0: the near plane has the larger window depth. Read for orthographic matrices alone */
     int32_t reversed_z;
-    int32_t unused;
+    /* In place of tile_size: so many columns and rows of tiles, 1 to 32768 each, whose sides need not be whole pixels;
+     * both 0: not read */
+    int32_t columns, rows;
+    int32_t max_tiles; /* in place of all three: about square tiles, at most so many; 0: not read */
 } lightbin_view_options;
 
 /* A projection, a viewport and a tile size, which fix the tile grid. Tile (x, y) has index y * tiles_x + x. */
@@ -229,7 +235,7 @@ typedef struct lightbin_view lightbin_view;
 
 /* Makes a view. On success *view is the view, to be freed with lightbin_view_destroy().
  *
- * Errors: LIGHTBIN_MATRIX_NOT_FINITE to LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, which say what is wrong with the matrix, the
+ * Errors: LIGHTBIN_MATRIX_NOT_FINITE to LIGHTBIN_TILE_COUNT_OUT_OF_RANGE, which say what is wrong with the matrix, the
  * viewport or the tile size. */
 LIGHTBIN_API lightbin_result lightbin_view_create(const lightbin_view_options* options, lightbin_view** view);
 
@@ -241,7 +247,7 @@ LIGHTBIN_API void lightbin_view_destroy(lightbin_view* view);
 /* What lightbin_view_describe() returns: what was read from the matrix, and what looks like a mistake. */
 typedef struct lightbin_view_info {
     uint32_t size;
-    int32_t width, height, tile_size; /* in pixels */
+    int32_t width, height, tile_size; /* in pixels; tile_size is 0 if numbers of tiles were given */
     int32_t tiles_x, tiles_y;
     int32_t orthographic, reversed_z; /* 0 or 1 */
     float near_depth, far_depth;      /* rounded outward; far_depth is +inf if there is no far plane */
@@ -258,6 +264,9 @@ typedef struct lightbin_view_info {
     int32_t pixels_not_square; /* by more than 2 %: is the viewport's size stale, or the aspect inverted? */
     int32_t viewport_empty;    /* the width or the height is 0: were they given? */
     int32_t oblique;           /* 0 or 1: the near plane is oblique, as for mirrors */
+    /* The projection turns the image by 90 or 270 degrees. Tile columns are counted along y of the viewport then, tile
+     * rows along x; x_flipped is that of view-space y, y_flipped that of x. */
+    int32_t turned;
 } lightbin_view_info;
 
 /* Describes a view. Set info->size before. */
@@ -677,6 +686,8 @@ typedef struct lightbin_snippet_options {
     lightbin_slot tiles, lists, grid, slices, bins, view;
     uint32_t views; /* how many views' lists lie one after another in the buffers, up to 512; 0: 1 */
     int32_t masks;  /* read lightbin_masks::words, bound at `lists`, in place of lists and their format */
+    int32_t columns_and_rows; /* for views of which numbers of tiles were given; tile_size is not read */
+    int32_t turned;           /* that of lightbin_view_info */
 } lightbin_snippet_options;
 
 /* A shader text and the resources to bind for it. */
@@ -738,6 +749,8 @@ LIGHTBIN_API lightbin_result lightbin_shader_binding(const lightbin_shader* shad
 /* The constants `grid` and `corner` of the text, with the layout of its uniform block. `corner` is the least x and y of
  * the viewport's pixels in the shader's own coordinates; only shaders with viewport_corner read it. */
 typedef struct lightbin_grid_constants {
+    /* Of a turned view, width and height are exchanged, and 2^30 is added to tile_size. Of a view with numbers of
+     * columns and rows, tile_size is the number of rows, and 2^31 is added to it. */
     uint32_t tile_size, tiles_x, width, height;
     int32_t corner_x, corner_y, unused[2];
 } lightbin_grid_constants;

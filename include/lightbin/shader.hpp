@@ -47,7 +47,9 @@ struct SnippetOptions {
     std::uint32_t views = 1;
 
     int tile_size = 0;             ///< in pixels, a literal in the shader text; 0: read from the shader constant `grid`
+    bool columns_and_rows = false;  ///< for views whose tile_size() is 0, with numbers of tiles; tile_size is not read
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
+    bool turned = false;           ///< for views whose turned() is true
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
     bool heat_map = false;         ///< adds the functions `count` and `heat`, which show a pixel's number of lights
     /// With masks: the lanes of a wave (subgroup) loop together over the lights that any lane has, so that a light's
@@ -72,10 +74,16 @@ struct SnippetOptions {
     std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
+namespace detail {
+inline constexpr std::uint32_t most_tile_size = (1u << 30) - 1;  ///< in shaders; larger than any viewport
+}
+
 /// The values of the shader's constants `grid` and `corner`. A uniform block and push constants have this layout;
 /// without viewport_corner, its first 16 bytes.
 struct GridConstants {
-    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    /// The constant `grid`. Of a turned view, width and height are exchanged, and 2^30 is added to tile_size. Of a view
+    /// with numbers of columns and rows, tile_size is the number of rows, and 2^31 is added to it.
+    std::uint32_t tile_size, tiles_x, width, height;
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused[2] = {};
 };
@@ -84,9 +92,12 @@ static_assert(sizeof(GridConstants) == 32 && sizeof(ListRange) == 8);  // neithe
 /// Returns the values of the shader's constants for a view. The corner is the least x and y of the viewport's pixels in
 /// the shader's own pixel coordinates; only shaders with SnippetOptions::viewport_corner read it.
 inline GridConstants grid_constants(const View& view, int corner_x = 0, int corner_y = 0) {
-    const ImageSize size = view.viewport();
+    const detail::Camera& camera = detail::camera_of(view);
     const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
-    return {u(view.tile_size()), u(view.tiles_x()), u(size.width), u(size.height), corner_x, corner_y};
+    const std::uint32_t tiles = view.tile_size() == 0 ? 1u << 31 | u(view.tiles_y())
+                                                      : detail::min_of(u(view.tile_size()), detail::most_tile_size);
+    return {tiles | u(view.turned()) << 30, u(view.tiles_x()), u(camera.x.split.side), u(camera.y.split.side),
+            corner_x, corner_y};
 }
 
 /// Returns the content of the buffer `slices`, slices.count() + 3 words of 32 bits: three coefficients and the index of
@@ -112,17 +123,19 @@ static_assert(sizeof(ViewConstants) == 32);  // it has no padding
 ///            thousand
 inline ViewConstants view_constants(const View& view, float tolerance = 2) {
     const detail::Camera& camera = detail::camera_of(view);
-    const auto pixels = [&](double tiles) { return static_cast<float>(tiles * view.tile_size()); };
     const auto scale = [&](const detail::ImageAxis& axis) {
-        return pixels(axis.scale * static_cast<double>(axis.sign));
+        return static_cast<float>(axis.split.pixels_of(axis.scale * static_cast<double>(axis.sign)));
+    };
+    const auto offset = [](const detail::ImageAxis& axis) {
+        return static_cast<float>(axis.split.pixels_of(axis.offset));
     };
     // The rasteriser rounds: a point on the near plane may reach the shader with a slightly smaller depth.
     const float near_depth = view.near_depth();
     const float slack = view.orthographic() ? 0x1p-10f * (std::fabs(near_depth) + std::fabs(view.far_depth()))
                                             : 0x1p-8f * near_depth;
-    return {scale(camera.x),         scale(camera.y), pixels(camera.x.offset),
-            pixels(camera.y.offset), camera.z_sign,   view.orthographic() ? 0.0f : 1.0f,
-            near_depth - slack,      tolerance};
+    return {scale(camera.x),    scale(camera.y), offset(camera.x),
+            offset(camera.y),   camera.z_sign,   view.orthographic() ? 0.0f : 1.0f,
+            near_depth - slack, tolerance};
 }
 
 /// Returns shader text that reads the lists, to be inserted after `#version` and before its first use, or an Error that
@@ -156,10 +169,10 @@ inline ViewConstants view_constants(const View& view, float tolerance = 2) {
 /// tile's list between the least and the greatest rank of the depth's bin.
 ///
 /// `break`, `continue` and `return` work in the loop bodies, and loops can be nested. Ids ascend; each comes once. The
-/// list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or its tile size
-/// differs from options.tile_size, so nothing outside of the table of tiles that `grid` describes is read. Tiles and
-/// lists must be of one build: what a table that points beyond the lists reads is up to the graphics API (Direct3D: 0;
-/// WebGPU: 0 or another entry; OpenGL, Vulkan: robust access has to be enabled).
+/// list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or of a view that the
+/// options tile_size, columns_and_rows and turned are not for, so nothing outside of the table of tiles that `grid`
+/// describes is read. Tiles and lists must be of one build: what a table that points beyond the lists reads is up to
+/// the graphics API (Direct3D: 0; WebGPU: 0 or another entry; OpenGL, Vulkan: robust access has to be enabled).
 ///
 /// With wave_loop, `begin` and `next` step through the lights of the whole wave, so what depends on the id alone is
 /// uniform in it; cursor.own tells whether the lane's own masks contain the light. No `else` can follow the loop body,

@@ -29,7 +29,7 @@ struct ReduceOptions {
 /// The values of the constants `grid`, `planes`, `corner` and `tilt` of reduce_shader(). A uniform block has this
 /// layout: its first 32 bytes, with viewport_corner 48, with oblique all 64.
 struct ReduceConstants {
-    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    std::uint32_t tile_size, tiles_x, width, height;  ///< grid, as in GridConstants
     float far_end, slope, margin, unused;             ///< planes
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused_corner[2] = {};

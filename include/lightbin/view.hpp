@@ -38,6 +38,12 @@ struct ImageSize {
 /// The parameters of a View that from_projection() cannot read from the matrix.
 struct ViewOptions {
     int tile_size = 32;  ///< side of a square tile in pixels, 1 or more
+    /// In place of tile_size: so many columns and rows of tiles, of equal sides that need not be whole pixels, over the
+    /// viewport's width and height. 1 to View::max_side each, or both 0.
+    int columns = 0, rows = 0;
+    /// In place of all three: as many columns and rows of about square tiles as make at most so many tiles. For at most
+    /// 4096 cells in 24 slices it is 4096 / 24. 0: is not read.
+    int max_tiles = 0;
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
     WindowOrigin origin = WindowOrigin::lower_left;
     /// The near plane has the larger window depth. Read for orthographic matrices alone: a perspective matrix shows it.
@@ -68,7 +74,12 @@ struct TilePosition {
 /// A projection, a viewport and a tile size. Together they fix the tile grid.
 ///
 /// Tiles are squares of t = tile_size() pixels. Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels tx *
-/// t to (tx + 1) * t in x and ty * t to (ty + 1) * t in y, cut off at the viewport's edge. View depth is the distance
+/// t to (tx + 1) * t in x and ty * t to (ty + 1) * t in y, cut off at the viewport's edge. With numbers of columns and
+/// rows, of N tiles along W pixels, tile tx has the pixels x whose centre lies in it: (2 x + 1) N / (2 W), rounded
+/// down, is tx. Its lists have all lights of these pixels, up to their edges.
+///
+/// If the projection turns the image by 90 or 270 degrees, as Android's pre-rotation does, the grid is that of the
+/// upright image: tile columns are counted along y of the viewport, tile rows along x. View depth is the distance
 /// from the eye (orthographic: from the plane z = 0) along the viewing direction, in the units of view space.
 class View {
 public:
@@ -78,9 +89,9 @@ public:
     ///
     /// projection  maps view space to clip space: a glm::mat4, any projection[column][row] of floats or doubles, or
     ///             another type that matrix.hpp lists. Perspective projections may be symmetric or not, jittered, with
-    ///             finite or infinite far plane, standard or reversed Z, look down -z or +z, and be flipped in x or y.
-    ///             Orthographic ones may be centred or not. The near plane may be oblique, as for mirrors: the View
-    ///             looks along z, whichever way the plane is turned.
+    ///             finite or infinite far plane, standard or reversed Z, look down -z or +z, be flipped in x or y, and
+    ///             turn the image by 90, 180 or 270 degrees. Orthographic ones may be centred or not. The near plane may
+    ///             be oblique, as for mirrors: the View looks along z, whichever way the plane is turned.
     /// viewport    0 to max_side pixels a side. An empty viewport has no tiles.
     template <class Matrix>
     static Result<View> from_projection(const Matrix& projection, ImageSize viewport,
@@ -88,13 +99,15 @@ public:
         return make(detail::to_matrix(projection), viewport, options);
     }
 
-    /// Returns this view with tiles of another size. Errors: those of from_projection().
+    /// Returns this view with square tiles of another size. Errors: those of from_projection().
     Result<View> with_tile_size(int tile_size) const {
         const auto clip_depth = static_cast<ClipDepth>(projection_.depth.zero_to_one);
-        return make(projection_.matrix, viewport_, {tile_size, clip_depth, origin_, reversed_z()});
+        return make(projection_.matrix, viewport_,
+                    {.tile_size = tile_size, .clip_depth = clip_depth, .origin = origin_, .reversed_z = reversed_z()});
     }
 
     ImageSize viewport() const { return viewport_; }
+    /// In pixels; 0 if the view was made with numbers of columns and rows, or of tiles.
     int tile_size() const { return tile_size_; }
     int tiles_x() const { return projection_.camera.x.tiles; }
     int tiles_y() const { return projection_.camera.y.tiles; }
@@ -106,6 +119,8 @@ public:
     bool reversed_z() const { return projection_.depth.reversed; }
     /// Whether the near plane is oblique, as for mirrors, water and portals.
     bool oblique() const { return projection_.depth.oblique(); }
+    /// Whether the projection turns the image by 90 or 270 degrees: for SnippetOptions::turned.
+    bool turned() const { return projection_.turned; }
 
     /// Returns what was read from the matrix, to be printed with std::puts(to_string(view.summary()).c_str()).
     ViewSummary summary() const {
@@ -131,8 +146,8 @@ public:
     float window_depth(const ImagePoint& point) const {
         const detail::DepthMap& map = projection_.depth;
         if (!map.oblique()) return map.window_depth(point.depth);
-        return map.tilted(map.tilt_at(2 * point.x / viewport_.width - 1, 2 * point.y / viewport_.height - 1))
-            .window_depth(point.depth);
+        const double x = 2 * point.x / viewport_.width - 1, y = 2 * point.y / viewport_.height - 1;
+        return map.tilted(turned() ? map.tilt_at(y, x) : map.tilt_at(x, y)).window_depth(point.depth);
     }
 
     /// Returns where in the image a view-space point lies, inside or outside of the viewport, up to rounding in double.
@@ -141,14 +156,16 @@ public:
         const detail::Camera& camera = projection_.camera;
         const double depth = static_cast<double>(camera.z_sign) * point.z,
                      distance = camera.orthographic ? 1 : depth;
-        return {pixels(camera.x, point.x / distance), pixels(camera.y, point.y / distance), depth};
+        const double x = pixels(camera.x, point.x / distance), y = pixels(camera.y, point.y / distance);
+        return turned() ? ImagePoint{y, x, depth} : ImagePoint{x, y, depth};
     }
 
     /// The inverse of image_point(): the view-space point that an image point shows. The viewport must not be empty.
     ViewPoint view_point(const ImagePoint& point) const {
         const detail::Camera& camera = projection_.camera;
         const double distance = camera.orthographic ? 1 : point.depth;
-        return {slope(camera.x, point.x) * distance, slope(camera.y, point.y) * distance,
+        return {slope(camera.x, turned() ? point.y : point.x) * distance,
+                slope(camera.y, turned() ? point.x : point.y) * distance,
                 static_cast<double>(camera.z_sign) * point.depth};
     }
 
@@ -163,7 +180,9 @@ public:
         const bool inside =
             point.x >= 0 && point.x < viewport_.width && point.y >= 0 && point.y < viewport_.height;
         if (!inside || !(orthographic() || point.depth > 0)) return std::nullopt;
-        return TilePosition{static_cast<int>(point.x) / tile_size_, static_cast<int>(point.y) / tile_size_};
+        const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
+        return TilePosition{projection_.camera.x.split.tile_of(turned() ? y : x),
+                            projection_.camera.y.split.tile_of(turned() ? x : y)};
     }
 
 private:
@@ -177,14 +196,34 @@ private:
                 return Error{ErrorCode::viewport_out_of_range, static_cast<std::uint64_t>(side), max_side};
         if (options.tile_size < 1)
             return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
+        int columns = options.columns, rows = options.rows;
+        const int fewest = detail::min_of(columns, rows), most = detail::max_of(columns, rows);
+        if (fewest < 0 || most > max_side || (fewest == 0 && most > 0) || options.max_tiles < 0)
+            return Error{ErrorCode::tile_count_out_of_range,
+                         static_cast<std::uint64_t>(most > max_side ? most : detail::min_of(fewest, options.max_tiles)),
+                         max_side};
+        if (options.max_tiles > 0) {
+            // Square tiles are  sqrt(max_tiles height / width)  rows; here rounded to the nearest whole number.
+            const std::int64_t width = detail::max_of(viewport.width, 1), height = detail::max_of(viewport.height, 1),
+                               limit = detail::min_of<std::int64_t>(options.max_tiles, height);
+            std::int64_t count = 1;
+            while (count < limit && (2 * count + 1) * (2 * count + 1) * width <= 4 * height * options.max_tiles)
+                ++count;
+            rows = static_cast<int>(count);
+            columns = static_cast<int>(detail::min_of(options.max_tiles / count, width));
+        }
+        const auto split = [&](int side, int count) {
+            return count > 0 ? detail::TileSplit{side, detail::max_of(side, 1), count}
+                             : detail::TileSplit{side, options.tile_size, 1};
+        };
         View view;
         view.viewport_ = viewport;
-        view.tile_size_ = options.tile_size;
+        view.tile_size_ = columns > 0 ? 0 : options.tile_size;
         view.origin_ = options.origin;
         view.projection_.matrix = matrix;
         view.projection_.depth.zero_to_one = options.clip_depth == ClipDepth::zero_to_one;
         if (const auto code =
-                view.projection_.read(viewport.width, viewport.height, options.tile_size,
+                view.projection_.read(split(viewport.width, columns), split(viewport.height, rows),
                                       options.origin == WindowOrigin::lower_left, options.reversed_z))
             return Error{*code};
         return view;
@@ -192,16 +231,16 @@ private:
 
     /// Pixel coordinate of a slope x / depth (orthographic: of a view-space coordinate x) on one image axis.
     double pixels(const detail::ImageAxis& axis, double slope) const {
-        return tile_size_ * (axis.scale * static_cast<double>(axis.sign) * slope + axis.offset);
+        return axis.split.pixels_of(axis.scale * static_cast<double>(axis.sign) * slope + axis.offset);
     }
     /// Slope x / depth (orthographic: view-space coordinate x) of a pixel coordinate on one image axis.
     double slope(const detail::ImageAxis& axis, double pixels) const {
-        return static_cast<double>(axis.sign) * (pixels / tile_size_ - axis.offset) / axis.scale;
+        return static_cast<double>(axis.sign) * (axis.split.tiles_of(pixels) - axis.offset) / axis.scale;
     }
 
     detail::Projection projection_;
     ImageSize viewport_;
-    int tile_size_ = 1;
+    int tile_size_ = 1;  ///< 0: numbers of columns and rows were given
     WindowOrigin origin_ = WindowOrigin::lower_left;
 };
 

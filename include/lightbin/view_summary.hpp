@@ -20,8 +20,10 @@ struct ViewSummary {
     bool oblique;             ///< the near plane is oblique: near_depth and far_depth are those of the image's corners
     /// The near plane (x, y, z, w) in view space, with a normal of length 1: it is drawn where x px + y py + z pz + w >= 0.
     double near_plane[4];
-    bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
-    int width, height, tile_size;  ///< in pixels
+    bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y; if turned, y or x) grows
+    bool turned;                   ///< by 90 or 270 degrees: NDC x is made of view-space y, and NDC y of x
+    int width, height, tile_size;  ///< in pixels; tile_size is 0 if the view was made with numbers of tiles
+    int tiles_x, tiles_y;
 
     // Each flag below is set where the matrix or the viewport looks like a common mistake. A View with
     // a flag set is right if that was intended.
@@ -46,13 +48,18 @@ inline Text to_string(const ViewSummary& view) {
     char text[256];
     std::snprintf(
         text, sizeof text,
-        "%s, %.4g x %.4g %s, aspect %.4g, near %.6g, far %.6g, looks down %s, %d x %d pixels in tiles of %d",
+        "%s, %.4g x %.4g %s, aspect %.4g, near %.6g, far %.6g, looks down %s, %d x %d pixels in ",
         flat ? "orthographic" : "perspective", view.x_size, view.y_size, flat ? "units" : "degrees",
         view.aspect, view.near_depth, view.far_depth,
-        view.looks_down_negative_z ? "-z (right-handed)" : "+z (left-handed)", view.width, view.height,
-        view.tile_size);
+        view.looks_down_negative_z ? "-z (right-handed)" : "+z (left-handed)", view.width, view.height);
     Text line;
     line.append(text);
+    if (view.tile_size > 0)
+        std::snprintf(text, sizeof text, "tiles of %d", view.tile_size);
+    else
+        std::snprintf(text, sizeof text, "%d x %d tiles", view.tiles_x, view.tiles_y);
+    line.append(text);
+    if (view.turned) line.append(", turned");
     if (view.reversed_z) line.append(", reversed Z");
     if (view.oblique) {
         const double* const plane = view.near_plane;

@@ -38,8 +38,8 @@ constexpr const char* to_string(DepthFormat format) {
     return detail::name_at(format, {"float32", "unorm24", "unorm16", "view_depth"});
 }
 
-/// A depth buffer in main memory that covers the view's viewport and nothing else. Samples are window depths from 0 to
-/// 1, as glReadPixels returns them, or view depths.
+/// A depth buffer in main memory that covers the view's viewport and nothing else; with a turned view it is turned, as
+/// drawn. Samples are window depths from 0 to 1, as glReadPixels returns them, or view depths.
 struct DepthBuffer {
     /// Rows of pixels from the view's window origin on. The samples of one pixel are next to each other.
     std::span<const float> depth = {};
@@ -47,8 +47,9 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// Treats samples at the far end of the depth range (1, or 0 with reversed Z, or +inf if they are view depths) as
-    /// background, where nothing is drawn. Right for buffers that were cleared to that value and drawn with a strict depth comparison, and for
-    /// lights of opaque surfaces alone: transparent ones are seen in front of the background, too.
+    /// background, where nothing is drawn. Right for buffers that were cleared to that value and drawn with a strict
+    /// depth comparison, and for lights of opaque surfaces alone: transparent ones are seen in front of the background,
+    /// too.
     bool skip_background = false;
 };
 
@@ -89,16 +90,17 @@ inline DepthInterval fragment_depths(const DepthMap& map, Extremes window, Depth
 ///
 /// x0, x1, y  the tile's columns of pixels, and the row that the first of `rows` is
 /// samples    how many a pixel has: more than one may lie anywhere in the pixel, a single one in its middle
-inline DepthInterval reduce_oblique_tile(const DepthMap& map, ImageSize viewport, const DepthRows& rows,
-                                         std::size_t x0, std::size_t x1, std::size_t y, std::size_t samples,
-                                         float skipped, DepthFormat format) {
-    const double width = viewport.width, height = viewport.height, reach = samples > 1 ? 1 : 0;
+inline DepthInterval reduce_oblique_tile(const View& view, const DepthRows& rows, std::size_t x0, std::size_t x1,
+                                         std::size_t y, std::size_t samples, float skipped, DepthFormat format) {
+    const DepthMap& map = projection_of(view).depth;
+    const double width = view.viewport().width, height = view.viewport().height, reach = samples > 1 ? 1 : 0;
     DepthInterval depths = {infinity, -infinity};
     for (std::size_t row = 0; row < rows.rows; ++row)
         for (std::size_t x = x0; x < x1; ++x) {
-            const Tilt tilt = map.tilts_around((2 * static_cast<double>(x) + 1) / width - 1,
-                                               (2 * static_cast<double>(y + row) + 1) / height - 1, reach / width,
-                                               reach / height);
+            const double right = (2 * static_cast<double>(x) + 1) / width - 1,
+                         up = (2 * static_cast<double>(y + row) + 1) / height - 1;
+            const Tilt tilt = view.turned() ? map.tilts_around(up, right, reach / height, reach / width)
+                                            : map.tilts_around(right, up, reach / width, reach / height);
             for (std::size_t i = x * samples; i < (x + 1) * samples; ++i) {
                 const float sample = rows.samples[row * rows.pitch + i];
                 if (sample <= skipped && sample >= skipped) continue;
@@ -148,27 +150,31 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                           : converted             ? detail::infinity
                           : view.reversed_z()     ? 0.0f
                                                   : 1.0f;
-    // A tile larger than the viewport is treated as one of its size, so that the products below do not overflow.
-    const std::size_t size = static_cast<std::size_t>(
-        detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
-    const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
-    const std::size_t width = static_cast<std::size_t>(viewport.width),
-                      height = static_cast<std::size_t>(viewport.height);
+    // Tiles follow each other across the viewport, which with a turned projection is down a column of tiles.
+    const detail::Camera& camera = detail::camera_of(view);
     const detail::DepthMap& map = detail::projection_of(view).depth;
+    const detail::TileSplit &across = (view.turned() ? camera.y : camera.x).split,
+                            &down = (view.turned() ? camera.x : camera.y).split;
+    const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x()), next_across = view.turned() ? tiles_x : 1,
+                      next_down = view.turned() ? 1 : tiles_x;
     isa = machine_isa(isa);
-    for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
-        const detail::DepthRows samples = {buffer.depth.data() + y * pitch, pitch,
-                                           detail::min_of(size, height - y), row};
+    for (int tile_row = 0; tiles > 0 && tile_row < down.count(); ++tile_row) {
+        const auto first = static_cast<std::size_t>(down.first_pixel(tile_row)),
+                   end = static_cast<std::size_t>(down.first_pixel(tile_row + 1));
+        const detail::DepthRows samples = {buffer.depth.data() + (first < end ? first : 0) * pitch, pitch, end - first,
+                                           row};
         const auto store = [&](std::size_t tile, DepthInterval depths) {
-            if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
-            if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
+            const std::size_t at = static_cast<std::size_t>(tile_row) * next_down + tile * next_across;
+            if (!out.min.empty()) out.min[at] = depths.min;
+            if (!out.max.empty()) out.max[at] = depths.max;
         };
-        if (map.oblique() && !converted)
-            for (std::size_t tile = 0, x = 0; tile < tiles_x; ++tile, x += size)
-                store(tile, detail::reduce_oblique_tile(map, viewport, samples, x, detail::min_of(x + size, width), y,
-                                                        samples_a_pixel, skipped, buffer.format));
-        else
-            detail::reduce_tile_row(isa, samples, size * samples_a_pixel, skipped,
+        for (int tile = 0; map.oblique() && !converted && tile < across.count(); ++tile)
+            store(static_cast<std::size_t>(tile),
+                  detail::reduce_oblique_tile(view, samples, static_cast<std::size_t>(across.first_pixel(tile)),
+                                              static_cast<std::size_t>(across.first_pixel(tile + 1)), first,
+                                              samples_a_pixel, skipped, buffer.format));
+        if (!map.oblique() || converted)
+            detail::reduce_tile_row(isa, samples, across, samples_a_pixel, skipped,
                                     [&](std::size_t tile, detail::Extremes range) {
                                         store(tile, detail::fragment_depths(map, range, buffer.format));
                                     });

@@ -38,6 +38,11 @@ export interface ViewOptions {
     height: number;
     /** The side of a square tile in pixels. Default: 32. */
     tileSize?: number;
+    /** In place of tileSize: so many columns and rows of tiles, 1 to 32768 each, which need not be whole pixels. */
+    columns?: number;
+    rows?: number;
+    /** In place of all three: about square tiles, at most so many. */
+    maxTiles?: number;
     /** The range of clip-space depth: minus-one-to-one for WebGL (the default), zero-to-one for WebGPU. */
     clipDepth?: 'minus-one-to-one' | 'zero-to-one';
     /** The corner of the window that holds pixel (0, 0): lower-left for WebGL (the default), upper-left for WebGPU. */
@@ -48,6 +53,7 @@ export interface ViewOptions {
 
 /** What a view knows; flags are 0 or 1. */
 export interface ViewInfo {
+    /** tileSize is 0 if numbers of tiles were given. */
     readonly width: number, height: number, tileSize: number, tilesX: number, tilesY: number;
     /** Rounded outward; farDepth is Infinity if there is no far plane. */
     readonly nearDepth: number, farDepth: number;
@@ -56,6 +62,8 @@ export interface ViewInfo {
     /** 1 where the matrix or the viewport looks like a common mistake. */
     readonly looksTransposed: number, looksLikeViewMatrix: number, looksTurned: number, looksBehind: number;
     readonly looksZeroToOne: number, pixelsNotSquare: number, viewportEmpty: number;
+    /** The projection turns the image by 90 or 270 degrees: tile columns are counted along y of the viewport. */
+    readonly turned: number;
 }
 
 interface Disposable {
@@ -284,6 +292,10 @@ export interface SnippetOptions {
     prefix?: string;
     /** In pixels, fixed in the text. Default: read at run time from the constant `grid`. */
     tileSize?: number;
+    /** For views of which numbers of tiles were given; tileSize is not read. */
+    columnsAndRows?: boolean;
+    /** ViewInfo.turned. */
+    turned?: boolean;
     tilesInUniformBlock?: boolean;
     packedIds?: boolean;
     flipY?: boolean;

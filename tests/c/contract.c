@@ -228,6 +228,17 @@ static void test_views(void) {
     CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
     CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
     CHECK(info.tile_size == 32 && info.size == sizeof info && info.viewport_empty == 0);
+    CHECK(info.turned == 0);
+    options.columns = 16;
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_TILE_COUNT_OUT_OF_RANGE);
+    options.rows = 9;
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
+    CHECK(info.tile_size == 0 && info.tiles_x == 16 && info.tiles_y == 9);
+    options.max_tiles = 1;
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
+    CHECK(info.tiles_x == 1 && info.tiles_y == 1);
     NEEDS(lightbin_view_describe(NULL, &info), "view");
     NEEDS(lightbin_view_describe(view, NULL), "info");
     CHECK(lightbin_view_text(view, text, sizeof text) > 40 && strcmp(text, "perspec") == 0);

@@ -493,6 +493,9 @@ TEST_CASE("C: shader texts are those of C++, in each language") {
         }
     auto plain = sized<lightbin_snippet_options>();  // all 0: the defaults
     compare_shaders(shader_snippet({}), lightbin_shader_snippet, plain);
+    plain.columns_and_rows = 1, plain.turned = 1;
+    compare_shaders(shader_snippet({.columns_and_rows = true, .turned = true}), lightbin_shader_snippet, plain);
+    plain = sized<lightbin_snippet_options>();
     plain.slicing = LIGHTBIN_Z_BINS, plain.masks = 1;
     compare_shaders(shader_snippet({.slicing = Slicing::z_bins, .masks = true}), lightbin_shader_snippet, plain);
 

@@ -291,6 +291,8 @@ void fuzz_snippet(Bytes& bytes) {
     options.window = (more_flags & 8) != 0;
     if ((more_flags & 16) != 0) take_slot(bytes, options.view);
     options.masks = (more_flags & 32) != 0;
+    options.columns_and_rows = (more_flags & 64) != 0;
+    options.turned = (more_flags & 128) != 0;
     for (const ShaderSlot slot : {options.slices, options.bins, options.view})
         question.slots.push_back(slot);
 

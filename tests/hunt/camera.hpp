@@ -21,6 +21,7 @@ struct Camera {
     lightbin::ImageSize viewport;
     lightbin::ViewOptions options;
     bool orthographic = false;
+    bool turned = false;                 ///< by 90 or 270 degrees: view-space x is up or down in the window
     long double toward = -1;             ///< view depth = toward * z
     double near_hint = 0, far_hint = 0;  ///< approximate depths of the planes; the far plane may be infinite
 };
@@ -78,6 +79,9 @@ inline Camera make_camera(bool ordinary, Random& random) {
     if (random.one_in(5))  // an oblique near plane
         for (const int axis : {0, 1})
             m[axis][2] = m[axis][axis] * random.between(-0.5, 0.5);
+    camera.turned = random.one_in(4);
+    for (int column = 0; camera.turned && column < 4; ++column)
+        std::swap(m[column][0], m[column][1]);
     camera.in_float = random.coin();
     if (camera.in_float) m = glm::dmat4(glm::mat4(m));
     return camera;
@@ -105,6 +109,21 @@ inline void set_grid(Camera& camera, Random& random) {
     constexpr int most_tiles = 70'000;
     const int first = side(most_tiles), across = side(most_tiles / (first / size + 1));
     camera.viewport = random.coin() ? lightbin::ImageSize{first, across} : lightbin::ImageSize{across, first};
+    if (!random.one_in(3)) return;
+    const auto count = [&](int pixels, int most) {
+        const int any =
+            random.pick({random.from_to(1, 20), random.from_to(1, 300), pixels - 1, pixels, 2 * pixels + 1});
+        return std::clamp(any, 1, std::min(most, most_side));
+    };
+    camera.options.columns = count(camera.viewport.width, most_tiles);
+    camera.options.rows = count(camera.viewport.height, most_tiles / camera.options.columns);
+}
+
+/// The side of a tile along an axis of the window, in pixels.
+inline long double tile_side(const Camera& camera, std::size_t axis) {
+    const int pixels = axis == 0 ? camera.viewport.width : camera.viewport.height,
+              count = axis == 0 ? camera.options.columns : camera.options.rows;
+    return count > 0 && pixels > 0 ? static_cast<long double>(pixels) / count : camera.options.tile_size;
 }
 
 /// Where a point of view space is seen.
@@ -141,7 +160,10 @@ inline Point point_at(const Camera& camera, long double x, long double y, long d
     const long double up = 2 * y / camera.viewport.height - 1;
     const long double ndc_y = camera.options.origin == lightbin::WindowOrigin::lower_left ? up : -up;
     const long double z = camera.toward * depth, w = m[2][3] * z + m[3][3];
-    return {(ndc_x * w - m[2][0] * z - m[3][0]) / m[0][0], (ndc_y * w - m[2][1] * z - m[3][1]) / m[1][1], z};
+    const int of_x = camera.turned ? 1 : 0, of_y = 1 - of_x;
+    const long double x_is = (ndc_x * w - m[2][0] * z - m[3][0]) / m[of_x][0],
+                      y_is = (ndc_y * w - m[2][1] * z - m[3][1]) / m[of_y][1];
+    return camera.turned ? Point{y_is, x_is, z} : Point{x_is, y_is, z};
 }
 
 }  // namespace hunt

@@ -284,14 +284,19 @@ private:
                 continue;
             const auto seen = see(camera_, in_view_space(scene_, point.point));
             if (!seen) continue;
-            const int size = view_->tile_size();
-            const auto tile_of = [&](Real at, int side) {  // -1 where not known
+            const int size = camera_.options.tile_size;
+            const auto tile_of = [&](Real at, int side, int count) {  // -1 where not known
                 const Long low = std::floor(at.low()), high = std::floor(at.high());
-                const bool known = low >= 0 && high < side && std::floor(low / size) == std::floor(high / size);
-                return known ? static_cast<std::ptrdiff_t>(std::floor(low / size)) : -1;
+                const auto tile = [&](Long pixel) {
+                    return static_cast<std::ptrdiff_t>(
+                        std::floor(count > 0 ? (2 * pixel + 1) * count / (2 * static_cast<Long>(side)) : pixel / size));
+                };
+                return low >= 0 && high < side && tile(low) == tile(high) ? tile(low) : -1;
             };
-            const auto x = tile_of(seen->x, camera_.viewport.width), y = tile_of(seen->y, camera_.viewport.height);
+            auto x = tile_of(seen->x, camera_.viewport.width, camera_.options.columns),
+                 y = tile_of(seen->y, camera_.viewport.height, camera_.options.rows);
             if (x < 0 || y < 0) continue;
+            if (camera_.turned) std::swap(x, y);
             placed_.push_back({point, *seen, static_cast<std::size_t>(y * view_->tiles_x() + x)});
             if (surely_less(seen->depth, static_cast<Long>(view_->near_depth())) ||
                 surely_less(static_cast<Long>(view_->far_depth()), seen->depth))

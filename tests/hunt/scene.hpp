@@ -202,17 +202,22 @@ private:
     /// Returns a light that barely contains a point of a tile. The point is often beside an edge or a corner of the
     /// tile, with the light beyond that edge, or before or behind the point.
     Sphere touching(bool small, Point& point) {
-        const int size = camera_.options.tile_size, sides[] = {camera_.viewport.width, camera_.viewport.height};
+        const int sides[] = {camera_.viewport.width, camera_.viewport.height};
         int outward[2];
         Long at[2];
-        for (int axis = 0; axis < 2; ++axis) {
-            const int tiles = (sides[axis] - 1) / size + 1,
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const Long size = tile_side(camera_, axis);
+            const int tiles = static_cast<int>(std::ceil(sides[axis] / size)),
                       tile = random_.one_in(6) ? random_.pick({0, tiles - 1}) : random_.below(tiles);
             outward[axis] = random_.from_to(-1, 1);
             const double step = random_.log_between(0x1p-28, 0x1p-3);
             const double place = outward[axis] < 0 ? step : outward[axis] > 0 ? 1 - step : random_.between(0.01, 0.99);
-            const Long from = static_cast<Long>(tile) * size, end = std::min<Long>(from + size, sides[axis]);
+            const Long from = tile * size, end = std::min<Long>(from + size, sides[axis]);
             at[axis] = from + (end - from) * place;
+            // Where tiles are no whole pixels, it is the edge of the tile's pixels that counts.
+            const Long inward = -outward[axis] * step;
+            if (size != std::floor(size) && inward != 0) at[axis] = std::round(at[axis] + inward) + inward;
+            at[axis] = std::clamp<Long>(at[axis], 0, sides[axis]);
         }
         const Long depth = pick_depth();
         const Point seen_at = point_at(camera_, at[0], at[1], depth);
@@ -221,14 +226,15 @@ private:
         Point away = {0, 0, random_.pick({0.0, 0.0, random_.between(-1, 1)})};
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (outward[axis] == 0) continue;
-            const Long step = outward[axis] * 0.001L * size;
+            const Long step = outward[axis] * 0.001L * tile_side(camera_, axis);
+            const std::size_t own = camera_.turned ? 1 - axis : axis;
             const Point beside =
                 point_at(camera_, at[0] + (axis == 0 ? step : 0), at[1] + (axis == 1 ? step : 0), depth);
             Point normal = {};
-            normal[axis] = beside[axis] < seen_at[axis] ? -1 : 1;
+            normal[own] = beside[own] < seen_at[own] ? -1 : 1;
             if (!camera_.orthographic) {
                 Point ray = seen_at;
-                ray[1 - axis] = 0;
+                ray[1 - own] = 0;
                 normal = plus(normal, ray, -dot(normal, ray) / dot(ray, ray));
             }
             away = plus(away, normal, random_.pick({1.0, random_.unit()}) / length(normal));
@@ -237,8 +243,11 @@ private:
         away = plus({}, away, 1 / length(away));
 
         // About a tile's width at that depth: a light with this radius covers few tiles.
-        const Long across = std::fabs(point_at(camera_, at[0] + size, at[1], depth)[0] - seen_at[0]),
-                   up = std::fabs(point_at(camera_, at[0], at[1] + size, depth)[1] - seen_at[1]),
+        const std::size_t of_x = camera_.turned ? 1 : 0;
+        const Long across =
+                       std::fabs(point_at(camera_, at[0] + tile_side(camera_, 0), at[1], depth)[of_x] - seen_at[of_x]),
+                   up = std::fabs(point_at(camera_, at[0], at[1] + tile_side(camera_, 1), depth)[1 - of_x] -
+                                  seen_at[1 - of_x]),
                    slope = camera_.orthographic ? 0 : length({seen_at[0], seen_at[1], 0}) / std::fabs(seen_at[2]),
                    tile_reach = std::min(across, up) / (1 + slope);
         Long most = 30 * tile_reach;
@@ -320,7 +329,10 @@ inline Scene make_scene(const Camera& camera, std::uint32_t count, std::uint32_t
     }
     scene.in_world = true;
     scene.to_view = make_world(std::clamp(std::fabs(camera.near_hint), 1e-20, 1e20) * 100, random);
-    scene.in_float = random.coin() && std::fabs(scene.to_view[0][0]) < 1e37;
+    double largest = 0;
+    for (int entry = 0; entry < 9; ++entry)
+        largest = std::max(largest, std::fabs(scene.to_view[entry / 3][entry % 3]));
+    scene.in_float = random.coin() && largest < 1e37;
     if (scene.in_float) scene.to_view = glm::dmat4(glm::mat4(scene.to_view));
     Maker(camera, scene, random).make_lights(count, large);
     return scene;

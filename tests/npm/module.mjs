@@ -125,6 +125,13 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
     same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
     same(view.gridConstants(5, 7), 'grid constants');
+    const turned = lightbin.view({...square, tileSize: 0, columns: 16, rows: 9}), counted = turned.info;
+    assert.deepEqual([counted.tileSize, counted.tilesX, counted.tilesY, counted.turned], [0, 16, 9, 0]);
+    const [a, b, c, d, e, f, ...others] = square.projection;
+    turned.update({projection: [b, a, c, d, f, e, ...others]});
+    const {tilesX, tilesY} = turned.info;
+    assert.deepEqual([tilesX, tilesY, turned.info.turned], [9, 16, 1]);
+    turned.dispose();
     same(view.viewConstants(1.5), 'view constants');
     same(slices.shaderWords(), 'words of slices');
     assert.equal(await lightbin.viewText(view), Buffer.from(block()).toString());
@@ -347,8 +354,9 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
                 /^format.capacity: -1 is no whole number from 0 to 4294967295$/],
         ];
         const others = [
-            ['tile-size-out-of-range', viewed({tileSize: -1}), /^the tile size must be at least 1 pixel, and is -1$/],
+            ['tile-size-out-of-range', viewed({tileSize: -1}), /^the tile size must be at least 1 pixel, and is -1;/],
             ['tile-size-out-of-range', () => view.update({tileSize: -3}), /-3/],
+            ['tile-count-out-of-range', viewed({columns: 3}), /and one is 0$/],
             ['viewport-out-of-range', viewed({width: 50000}), /50000/],
             ['matrix-not-finite', viewed({projection: identity.map(() => NaN)}), /./],
             ['view-matrix-not-affine', () => binner.bin(view, {...lights, viewMatrix: square.projection}), /./],

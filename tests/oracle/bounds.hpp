@@ -29,8 +29,7 @@ enum class BoundsShape {
 inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vector<Light>& lights,
                           BoundsShape shape, Random& random) {
     constexpr float inf = std::numeric_limits<float>::infinity();
-    const int nx = (camera.width + camera.tile - 1) / camera.tile;
-    const int ny = (camera.height + camera.tile - 1) / camera.tile;
+    const int nx = camera.tiles(0), ny = camera.tiles(1);
     const double first = aim.depth(random), across = aim.depth(random) / nx, up = aim.depth(random) / ny;
     Bounds bounds;
     for (int y = 0; y < ny; ++y)
@@ -57,8 +56,8 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             const double x = aim.pixel_of(0, aim.coordinate(0, light), static_cast<double>(tip));
             const double y = aim.pixel_of(1, aim.coordinate(1, light), static_cast<double>(tip));
             if (!(x >= 0 && x < camera.width && y >= 0 && y < camera.height)) continue;
-            const std::size_t tile = static_cast<std::size_t>(static_cast<int>(y) / camera.tile * nx +
-                                                              static_cast<int>(x) / camera.tile);
+            const std::size_t tile = static_cast<std::size_t>(camera.tile_of(1, static_cast<int>(y)) * nx +
+                                                              camera.tile_of(0, static_cast<int>(x)));
             const int ulps = random.integer(-1, 1);
             if (ulps != 0) tip = std::nextafter(tip, ulps < 0 ? -inf : inf);
             bounds.min[tile] = bounds.max[tile] = tip;

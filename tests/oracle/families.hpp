@@ -106,6 +106,9 @@ Scene scene_of(Random& random, std::size_t count, const MakeLens& make_lens, con
                double specials = 0.01) {
     const Screen screen = any_screen(random);
     Scene scene{camera_of("", make_lens(aspect_of(screen), random), screen), {}, {}, {}};
+    Camera& camera = scene.camera;
+    if (random.chance(0.25)) camera.columns = random.integer(1, 20), camera.rows = random.integer(1, 13);
+    camera.turned = random.chance(0.25);
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
         scene.lights.push_back(make_light(aim, random));
@@ -133,7 +136,7 @@ inline Scene specials(Random& random, std::size_t count) {
 inline Scene cell_faces(Random& random, std::size_t count) {
     Scene scene = scene_of(random, 0, any_lens, spheres::field);
     const Aim aim(scene.camera);
-    const int nx = (scene.camera.width + scene.camera.tile - 1) / scene.camera.tile;
+    const int nx = scene.camera.tiles(0);
     while (scene.lights.size() < count) {
         const std::size_t tile = static_cast<std::size_t>(random.bits() % scene.min.size());
         const int place[2] = {static_cast<int>(tile) % nx, static_cast<int>(tile) / nx};
@@ -147,8 +150,9 @@ inline Scene cell_faces(Random& random, std::size_t count) {
         double p[3] = {0, 0, d}, n[3] = {0, 0, end * random.uniform()};
         for (int axis = 0; axis < 2; ++axis) {
             const int side = random.integer(-1, 1);
-            const double at = place[axis] + (side < 0 ? 0.0 : side > 0 ? 1.0 : random.uniform());
-            const double pixel = std::min(at * scene.camera.tile, static_cast<double>(aim.side(axis)));
+            const double from = scene.camera.first_pixel(axis, place[axis]),
+                         beyond = scene.camera.first_pixel(axis, place[axis] + 1);
+            const double pixel = from + (beyond - from) * (side < 0 ? 0.0 : side > 0 ? 1.0 : random.uniform());
             p[axis] = aim.at(axis, pixel, d);
             const double weight = side * random.uniform();
             n[axis] += weight;
@@ -246,7 +250,7 @@ inline Scene axis_edges(Random& random, std::size_t count) {
     const int sides[] = {camera.width, camera.height};
     double edge[2];
     for (const int axis : {0, 1}) {
-        edge[axis] = random.integer(0, sides[axis] / camera.tile) * camera.tile;
+        edge[axis] = camera.first_pixel(axis, random.integer(0, camera.tiles(axis)));
         const double ndc = 2 * edge[axis] / sides[axis] - 1, up = axis == 1 && camera.upper_left ? -1 : 1;
         const int column = camera.m[2][3] == 0 ? 3 : 2, row = axis;
         const double entry = up * ndc * camera.m[column][3];

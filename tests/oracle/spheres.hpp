@@ -93,8 +93,7 @@ public:
 
     /// Returns the position of a random tile edge in the viewport or at its border.
     double tile_edge(int axis, Random& random) const {
-        const int tiles = (side(axis) + camera.tile - 1) / camera.tile;
-        return std::min(random.integer(0, tiles) * camera.tile, side(axis));
+        return camera.first_pixel(axis, random.integer(0, camera.tiles(axis)));
     }
     double pixel(int axis, Random& random, double beyond = 0.2) const {
         return side(axis) * random.uniform(-beyond, 1 + beyond);

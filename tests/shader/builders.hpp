@@ -50,7 +50,10 @@ inline std::vector<lightbin::ReduceOptions> every_reduction(lightbin::ShaderLang
 // 5 orthographic.
 constexpr int camera_count = 3, camera_count_with_oblique = 6;
 
-inline lightbin::View builder_view(int camera, int width, int height, int tile_size, bool flip_y) {
+/// columns, rows  in place of the tile size, unless they are 0
+/// turned         exchanges x and y of the image
+inline lightbin::View builder_view(int camera, int width, int height, int tile_size, bool flip_y, int columns = 0,
+                                   int rows = 0, bool turned = false) {
     using namespace lightbin;
     constexpr float matrices[camera_count_with_oblique][4][4] = {
         {{1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0.1f, -0.2f, -1.002f, -1}, {0, 0, -0.2002f, 0}},
@@ -59,10 +62,13 @@ inline lightbin::View builder_view(int camera, int width, int height, int tile_s
         {{1.2f, 0, 0.2f, 0}, {0, 1.7f, 1.1f, 0}, {0.1f, -0.2f, -0.8f, -1}, {0, 0, -0.5f, 0}},
         {{1.2f, 0, -0.1f, 0}, {0, -1.7f, 0.2f, 0}, {0, 0, 0.1f, -1}, {0, 0, 0.1f, 0}},
         {{0.06f, 0, 0.01f, 0}, {0, 0.08f, -0.02f, 0}, {0, 0, -0.02f, 0}, {0.1f, 0, -1, 1}}};
-    ViewOptions options{.tile_size = tile_size};
+    float matrix[4][4];
+    for (int i = 0; i < 16; ++i)
+        matrix[i / 4][i % 4] = matrices[camera][i / 4][turned && i % 4 < 2 ? 1 - i % 4 : i % 4];
+    ViewOptions options{.tile_size = tile_size, .columns = columns, .rows = rows};
     if (camera == 1 || camera == 4) options.clip_depth = ClipDepth::zero_to_one;
     if (flip_y) options.origin = WindowOrigin::upper_left;
-    return *View::from_projection(matrices[camera], {width, height}, options);
+    return *View::from_projection(matrix, {width, height}, options);
 }
 
 class BuilderNumbers {
@@ -141,9 +147,9 @@ struct BuiltScene {
 /// Returns a job that reduces a random depth buffer. Its result must hold all depths that reduce_depth() allows for,
 /// and be no wider than that by more than a few steps of floats and of the format.
 inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, int height,
-                      int tile_size) {
+                      int tile_size, int columns = 0, int rows = 0, bool turned = false) {
     using namespace lightbin;
-    const View view = builder_view(camera, width, height, tile_size, options.flip_y);
+    const View view = builder_view(camera, width, height, tile_size, options.flip_y, columns, rows, turned);
     options.reversed_z = view.reversed_z();
     options.orthographic = view.orthographic();
     options.oblique = view.oblique();
@@ -201,7 +207,7 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
     job.name = "reduce, camera " + std::to_string(camera) + ", format " +
                std::to_string(static_cast<int>(options.format)) + ", " + std::to_string(samples) +
                " samples, " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
-               std::to_string(tile_size);
+               std::to_string(tile_size) + (columns > 0 ? ", columns and rows" : "") + (turned ? ", turned" : "");
     job.stage = options.fragment ? Stage::fragment : Stage::compute;
     job.groups = {static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y())};
     job.width = job.groups[0];
@@ -214,7 +220,10 @@ inline Job reduce_job(lightbin::ReduceOptions options, int camera, int width, in
         for (int x = 0; x < width; ++x)
             for (std::size_t s = 0; s < samples; ++s) {
                 const float value = depth[static_cast<std::size_t>(y * width + x) * samples + s];
-                const auto tile = static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
+                const int across = columns > 0 ? (2 * x + 1) * columns / (2 * width) : x / tile_size,
+                          down = rows > 0 ? (2 * y + 1) * rows / (2 * height) : y / tile_size;
+                const auto tile = static_cast<std::size_t>(turned ? across * view.tiles_x() + down
+                                                                  : down * view.tiles_x() + across);
                 if (options.skip_background && value == background) continue;
                 const bool unknown = std::isnan(value);
                 lower[tile] = (std::min)(lower[tile], unknown ? 0.0 : static_cast<double>(value));
@@ -283,6 +292,8 @@ inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool mult
                              {Size{1, 1, 64}, Size{33, 17, 7}, Size{333, 217, 16}, Size{100, 60, 32}})
                             jobs.push_back(
                                 reduce_job(options, camera, size.width, size.height, size.tile_size));
+                        jobs.push_back(reduce_job(options, camera, 33, 17, 7, 0, 0, true));
+                        jobs.push_back(reduce_job(options, camera, 33, 17, 7, 5, 40, turn % 3 == 0));
                     }
     return jobs;
 }

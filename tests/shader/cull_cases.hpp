@@ -287,7 +287,8 @@ private:
         using namespace lightbin;
         constexpr bool spots = std::is_same_v<Light, Spot>;
         constexpr Slicing slicing = way.slicing;
-        BuiltScene scene{builder_view(camera, 333, 217, tile_size, false),
+        const bool counted = turn_ % 4 == 1, turned = turn_ % 5 == 2;
+        BuiltScene scene{builder_view(camera, 333, 217, tile_size, false, counted ? 23 : 0, counted ? 14 : 0, turned),
                          {},
                          Slices::exponential(17, 0.7f, 90)->with_margin(way.slice_margin)};
         const auto bounds = cull_z_bounds(scene.view);
@@ -321,8 +322,9 @@ private:
         CullTally tally = compare_lists(grid, expected);
         tally.add(compare_masks(made, grid, source));
         tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
-        add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) + (way.bounded ? ", bounded, camera " : ", camera ") +
-                std::to_string(camera) + ", tile " + std::to_string(tile_size),
+        add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) +
+                (way.bounded ? ", bounded, camera " : ", camera ") + std::to_string(camera) + ", tile " +
+                std::to_string(scene.view.tile_size()) + (turned ? ", turned" : ""),
             tally);
     }
 

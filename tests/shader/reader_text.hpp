@@ -168,7 +168,10 @@ private:
             text += std::string("    vec2 scale = vec2(") + std::to_string(scale_x) + ", " +
                     std::to_string(scale_y) + ");\n    vec2 size = vec2($grid.zw);\n    uvec2 here = pixel" +
                     (options_.viewport_corner ? " - uvec2($corner);\n" : ";\n") +
-                    (options_.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "") +
+                    (options_.flip_y ? std::string("    here.y = $grid.") + (options_.turned ? "z" : "w") +
+                                           " - 1u - here.y;\n"
+                                     : "") +
+                    (options_.turned ? "    here = here.yx;\n" : "") +
                     "    bool inside = here.x < $grid.z && here.y < $grid.w" +
                     (several_ ? " && view < " + views : "") +
                     ";\n    vec2 ndc = 2.0 * (vec2(here) + 0.5) / size - 1.0;\n" +

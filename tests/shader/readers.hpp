@@ -65,6 +65,10 @@ inline lightbin::SnippetOptions with_switches(lightbin::SnippetOptions options, 
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
     options.heat_map = switches & 8;
+    // Some have one of these, and one set both.
+    const unsigned turn = switches / 2;
+    options.columns_and_rows = turn == 1 || turn == 4 || turn == 7;
+    options.turned = turn == 2 || turn == 5 || turn == 7;
     // Only one of these options is on at a time.
     options.view_check = switches / 4 == 3;
     options.list_check = switches / 4 == 0;
@@ -186,10 +190,13 @@ Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& 
     std::vector<BinRange> bins;
     for (Binner<of_binner>& binner : binners) {
         const float aside = view_shift * static_cast<float>(views.size());
-        const float projection[4][4] = {
+        float projection[4][4] = {
             {scale_x, 0, 0, 0}, {0, scale_y, 0, 0}, {aside, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
-        views.push_back(*View::from_projection(projection, {screen.width, screen.height},
-                                               {.tile_size = screen.tile_size}));
+        for (auto& column : projection)
+            if (options.turned) std::swap(column[0], column[1]);
+        ViewOptions of_view = {.tile_size = screen.tile_size};
+        if (options.columns_and_rows) of_view.columns = 5, of_view.rows = 4;
+        views.push_back(*View::from_projection(projection, {screen.width, screen.height}, of_view));
         of_views.push_back(view_constants(views.back()));
         const auto inputs = inputs_for<of_binner>({}, slices);
         grids.push_back(*binner.bin(views.back(), spheres, inputs));
@@ -210,7 +217,8 @@ Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& 
     Job job;
     job.name = to_string(options.language) + std::string(" ") + to_string(options.storage) +
                (stage == Stage::compute ? ", compute, " : ", fragment, ") + std::to_string(screen.width) +
-               "x" + std::to_string(screen.height) + ", tile " + std::to_string(screen.tile_size);
+               "x" + std::to_string(screen.height) + ", tile " + std::to_string(screen.tile_size) +
+               (options.columns_and_rows ? ", columns and rows" : "") + (options.turned ? ", turned" : "");
     if (options.tile_size != 0) options.tile_size = screen.tile_size;
     options.max_tiles = static_cast<std::uint32_t>(grid->ranges().size());
     options.max_entries = static_cast<std::uint32_t>(grid->ids().size()) + 1;  // 0 would be unknown
@@ -249,17 +257,24 @@ Job reader_job(lightbin::SnippetOptions options, Stage stage, const ScreenSize& 
     // The tile size in the shader: the constants may be unset, and rows below the viewport wrap around.
     const std::uint32_t tile_size =
         unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
+    const auto tile_of = [&](std::uint32_t pixel, int tiles, std::uint32_t side) {
+        if (!options.columns_and_rows) return pixel / tile_size;
+        return (2 * pixel + 1) * (unset ? 0 : static_cast<std::uint32_t>(tiles)) / (std::max)(2 * side, 1u);
+    };
     const std::vector<float> depths = reader_depths();
     for (std::uint32_t y = 0; y < job.height * job.views; ++y)
         for (std::uint32_t x = 0; x < job.width; ++x) {
             const std::uint32_t view = y / band, own_y = y % band,
-                                row = options.flip_y ? constants.height - 1 - own_y : own_y,
-                                tx = x / tile_size, ty = row / tile_size;
+                                height = options.turned ? constants.width : constants.height;
+            std::uint32_t column = x, row = options.flip_y ? height - 1 - own_y : own_y;
+            if (options.turned) std::swap(column, row);
+            const std::uint32_t tx = tile_of(column, grid->tiles_x(), constants.width),
+                                ty = tile_of(row, grid->tiles_y(), constants.height);
             std::uint32_t hash = 2166136261u, sum = 0, count = 0, listed = 0;
             const float depth = depths[static_cast<std::size_t>(5 * x + 3 * own_y) % depths.size()];
             const int slice = slices.slice_at(depth);
             const BinRange all = {0, 0xffffffff};
-            const bool inside = x < constants.width && row < constants.height && view < options.views;
+            const bool inside = column < constants.width && row < constants.height && view < options.views;
             const BinRange bin = slicing == Slicing::z_bins && inside
                                      ? grids[view].ranks().bins[static_cast<std::size_t>(slice)]
                                      : all;

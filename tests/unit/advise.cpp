@@ -476,6 +476,32 @@ TEST_CASE("any input") {
     const View view = test::view({1000, 700}, 32);
     const std::vector<float> few(view.tile_count() - 1);
     CHECK(advise(view, bad, {}, {.max = few}).error().code == ErrorCode::z_bounds_too_small);
+    glm::mat4 matrix = glm::perspectiveRH_NO(1.0471976f, 1.5f, 0.1f, 1000.0f);
+    CHECK(advise(*View::from_projection(matrix, {300, 200}, {.columns = 3, .rows = 2}), bad).error().code ==
+          ErrorCode::tile_size_out_of_range);
+    // Turned, the image has the same tiles.
+    const View upright = *View::from_projection(matrix, {300, 200}, {.tile_size = 9});
+    for (int column = 0; column < 4; ++column)
+        std::swap(matrix[column].x, matrix[column].y);
+    const View turned = *View::from_projection(matrix, {200, 300}, {.tile_size = 9});
+    const auto lights = test::random_lights(100, 5);
+    std::vector<float> max;
+    for (std::size_t tile = 0; tile < upright.tile_count(); ++tile)
+        max.push_back(static_cast<float>(tile % 50));
+    const auto evaluations = [](const Advice& advice) {
+        std::multiset<double> found;
+        for (const AdvicePlan& plan : advice.plans())
+            found.insert(plan.evaluations);
+        return found;
+    };
+    CHECK(evaluations(advised(turned, lights, {}, {.max = max})) ==
+          evaluations(advised(upright, lights, {}, {.max = max})));
+    std::vector<float> of_upright(6 * 4), of_turned(4 * 6);
+    for (std::size_t y = 0; y < 4; ++y)
+        for (std::size_t x = 0; x < 6; ++x)
+            of_upright[y * 6 + x] = of_turned[x * 4 + y] = static_cast<float>(3 + 5 * x + 7 * y);
+    CHECK(evaluations(advised_in_slices(turned, lights, {.depths = of_turned, .size = {4, 6}})) ==
+          evaluations(advised_in_slices(upright, lights, {.depths = of_upright, .size = {6, 4}})));
     const auto too_few = advise_slices(view, bad, {.clusters = a_dozen, .z_bins = hundred},
                                        {.depths = depths, .size = {3, 3}});
     CHECK(too_few.error().code == ErrorCode::depth_buffer_too_small);

@@ -179,6 +179,12 @@ TEST_CASE("the size in pixels of small, large and infinite spheres") {
                                         {0, 0, -1e6f, 999500.0f}};
     const auto covered = *coverage(view, lights);
     REQUIRE(covered.size() == lights.size());
+    const View oblong = *View::from_projection(glm::perspectiveRH_NO(1.0471976f, 640 / 360.0f, 0.1f, 1000.0f),
+                                               {640, 360}, {.columns = 40, .rows = 3});
+    const auto in_oblong_tiles = *coverage(oblong, lights);
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (std::isfinite(covered[i].pixels))
+            CHECK(in_oblong_tiles[i].pixels == doctest::Approx(covered[i].pixels).epsilon(1e-5));
     const auto near_is = [&](std::size_t i, double pixels) {
         CHECK(double{covered[i].pixels} >= pixels);
         CHECK(double{covered[i].pixels} <= pixels * (1 + 1e-5) + 1e-3);

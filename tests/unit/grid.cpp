@@ -39,6 +39,44 @@ TEST_CASE("how long the lists are") {
     CHECK(list_lengths(*binner.bin(view, std::vector<glm::vec4>())).histogram[0] == view.tile_count());
 }
 
+TEST_CASE("turned by 90 and 270 degrees, as Android's pre-rotation does: no point's pixel lacks the point's light") {
+    const auto lights = test::random_lights(300, 31);
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> side(-0.57f, 0.57f);
+    std::size_t points = 0, missed = 0;
+    for (const glm::mat4& upright : {glm::perspectiveRH_NO(1.0f, 1.777f, 0.1f, 1000.0f),
+                                     glm::orthoRH_NO(-30.0f, 50.0f, -20.0f, 25.0f, -1.0f, 90.0f)})
+        for (const float up : {-1.0f, 1.0f})
+            for (const auto& [columns, rows] : {std::pair(0, 0), {9, 16}})
+                for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
+                    glm::mat4 turned = upright;
+                    for (int column = 0; column < 4; ++column)
+                        turned[column] = {up * upright[column].y, -up * upright[column].x, upright[column].z,
+                                          upright[column].w};
+                    const View view = *View::from_projection(
+                        turned, {1080, 1920}, {.columns = columns, .rows = rows, .origin = origin});
+                    REQUIRE(view.turned());
+                    CHECK(view.tiles_x() == (columns > 0 ? 16 : 60));
+                    Binner<> binner;
+                    const auto grid = binner.bin(view, lights);
+                    for (int i = 0; i < 100'000; ++i) {
+                        const std::size_t id = static_cast<std::size_t>(i) % lights.size();
+                        const glm::vec4& light = lights[id];
+                        const glm::vec4 offset(side(random), side(random), side(random), 0),
+                            clip = turned * (glm::vec4(light.x, light.y, light.z, 1) + light.w * offset);
+                        if (!glm::all(glm::lessThan(glm::abs(glm::vec3(clip)), glm::vec3(0.9999f * clip.w)))) continue;
+                        const float y = origin == WindowOrigin::lower_left ? clip.y : -clip.y;
+                        const auto tile = view.tile_of_pixel(static_cast<int>((clip.x / clip.w + 1) / 2 * 1080),
+                                                             static_cast<int>((y / clip.w + 1) / 2 * 1920));
+                        const auto list = grid->lights_in(tile->x, tile->y);
+                        ++points;
+                        missed += !std::ranges::binary_search(list, static_cast<std::uint32_t>(id));
+                    }
+                }
+    CHECK(points > 400'000);
+    CHECK(missed == 0);
+}
+
 namespace {
 
 /// The projection with `plane` as its near plane: E. Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005.

@@ -229,6 +229,12 @@ TEST_CASE("view_constants: where a View has a point, and how near it may be") {
         for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
             const auto view =
                 View::from_projection(projection, {1919, 1079}, {.tile_size = 7, .origin = origin});
+            for (const int columns : {1, 16}) {
+                const auto counted = View::from_projection(projection, {1919, 1079},
+                                                           {.columns = columns, .rows = 9, .origin = origin});
+                CHECK(view_constants(*counted).scale_y == doctest::Approx(view_constants(*view).scale_y));
+                CHECK(view_constants(*counted).offset_x == doctest::Approx(view_constants(*view).offset_x));
+            }
             const ViewConstants shader = view_constants(*view, 3);
             const ImagePoint there = view->image_point({0.4, -0.3, -2});
             const float depth = shader.forward * -2, by = shader.perspective > 0 ? depth : 1;

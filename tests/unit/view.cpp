@@ -64,6 +64,55 @@ TEST_CASE("tile grids") {
     CHECK(tiles(16384, 16384, 1) == std::pair(16384, 16384));
 }
 
+TEST_CASE("numbers of columns and rows: each pixel is in the tile of its centre, up to the largest sizes") {
+    const auto matrix = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
+    for (const int width : {1, 2, 7, 640, 1919, 32768})
+        for (const int columns : {1, 2, 3, 16, 639, 1919, 32767, 32768}) {
+            const View view = *View::from_projection(matrix, {width, 1080}, {.columns = columns, .rows = 9});
+            CHECK(view.tiles_x() == columns);
+            CHECK(view.tiles_y() == 9);
+            CHECK(view.tile_size() == 0);
+            bool right = true;
+            for (int x = 0; x < width; ++x) {
+                const long double tiles = (x + 0.5L) * columns / width;  // exact
+                right = right && view.tile_of_pixel(x, 600)->x == static_cast<int>(tiles);
+                right = right && view.tile_at({x + 0.9, 600, 1})->x == static_cast<int>(tiles);
+            }
+            CHECK(right);
+            CHECK(!view.tile_of_pixel(width, 600));
+        }
+    const View view = *View::from_projection(glm::perspective(1.0f, 16 / 9.0f, 0.1f, 100.0f), full_hd,
+                                             {.columns = 16, .rows = 9});
+    CHECK(view.with_tile_size(24)->tiles_x() == 80);
+    const std::string line(to_string(view.summary()));
+    CHECK(line.find("1920 x 1080 pixels in 16 x 9 tiles") != std::string::npos);
+    CHECK(line.find('?') == std::string::npos);
+    CHECK(View::from_projection(matrix, {0, 480}, {.columns = 16, .rows = 9})->tile_count() == 0);
+}
+
+TEST_CASE("at most so many tiles: about square ones") {
+    const auto matrix = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
+    const auto tiles = [&](int width, int height, int most) {
+        const View view = *View::from_projection(matrix, {width, height}, {.max_tiles = most});
+        return std::pair(view.tiles_x(), view.tiles_y());
+    };
+    CHECK(tiles(1920, 1080, 4096 / 24) == std::pair(17, 10));
+    CHECK(tiles(1080, 1920, 4096 / 24) == std::pair(10, 17));
+    CHECK(tiles(1000, 1000, 1) == std::pair(1, 1));
+    CHECK(tiles(1, 32768, 170) == std::pair(1, 170));
+    CHECK(tiles(32768, 1, 170) == std::pair(170, 1));
+    CHECK(tiles(4, 2, 170) == std::pair(4, 2));  // no tile is less than a pixel
+    CHECK(tiles(32768, 32768, std::numeric_limits<int>::max()) == std::pair(32768, 32768));
+    CHECK(tiles(0, 100, 170).first == 0);
+    for (int most = 1; most < 6000; most += 7)
+        for (const auto& [width, height] : {std::pair(1920, 1080), {3440, 1440}, {1080, 2400}, {800, 800}}) {
+            const auto [columns, rows] = tiles(width, height, most);
+            CHECK(columns * rows <= most);
+            const double shape = 1.0 * width / columns / (1.0 * height / rows);
+            if (most > 100) CHECK(std::fabs(std::log2(shape)) < 0.25);
+        }
+}
+
 TEST_CASE("sizes out of range are refused, and the text names them") {
     const auto matrix = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
     CHECK(refusal(matrix, {-1, 1080}) == ErrorCode::viewport_out_of_range);
@@ -76,6 +125,12 @@ TEST_CASE("sizes out of range are refused, and the text names them") {
     CHECK(message({1920, 40000}, {}).find("40000") != std::string::npos);
     CHECK(message({1920, 40000}, {}).find("32768") != std::string::npos);
     CHECK(message(full_hd, {.tile_size = -8}).find("-8") != std::string::npos);
+    for (const auto& [columns, rows, max_tiles, given] :
+         {std::tuple(3, 0, 0, " 0"), {0, 3, 0, " 0"}, {-2, 3, 0, "-2"}, {3, 32769, 0, "32769"}, {0, 0, -7, "-7"}}) {
+        const ViewOptions options = {.columns = columns, .rows = rows, .max_tiles = max_tiles};
+        CHECK(refusal(matrix, full_hd, options) == ErrorCode::tile_count_out_of_range);
+        CHECK(message(full_hd, options).find(given) != std::string::npos);
+    }
 }
 
 TEST_CASE("matrices that are no projection of the promised kinds are refused by name") {
@@ -137,6 +192,12 @@ TEST_CASE("a transposed matrix is refused as that, where it can be told") {
     CHECK(transposed(glm::ortho(-4.0f, 4.0f, -3.0f, 3.0f, 0.0f, 10.0f)) == ErrorCode::projection_transposed);
     CHECK(transposed(glm::ortho(-4.0f, 9.0f, -3.0f, 3.0f, -5.0f, 10.0f)) == ErrorCode::projection_transposed);
 
+    glm::mat4 turned = glm::frustum(-1.0f, 2.0f, -3.0f, 0.5f, 0.2f, 512.0f);
+    for (int column = 0; column < 4; ++column)
+        std::swap(turned[column].x, turned[column].y);
+    CHECK(View::from_projection(turned, full_hd)->turned());
+    CHECK(transposed(turned) == ErrorCode::projection_transposed);
+
     // A matrix that is refused for another reason keeps that reason.
     const glm::mat4 view = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(0, 0, 0), glm::vec3(0, 1, 0)),
                     good = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
@@ -145,20 +206,25 @@ TEST_CASE("a transposed matrix is refused as that, where it can be told") {
     CHECK(refusal(view) == ErrorCode::image_axes_rotated);
 }
 
-// Panda3D's lenses have z up in view space: x is to the right, and depth is along y.
-TEST_CASE("a projection of other axes is refused by a text that says so, and accepted once they are changed") {
-    const glm::mat4 to_z_up = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}},
-                    perspective = {{1.5f, 0, 0, 0}, {0, 0, 1001 / 999.0f, 1}, {0, 2, 0, 0}, {0, 0, -2000 / 999.0f, 0}},
+TEST_CASE("a projection along x or y is refused by name, and taken with the columns in the order that the text says") {
+    // As Panda3D's lenses make them, which have z up in view space: x right, depth along y.
+    const glm::mat4 perspective = {{1.5f, 0, 0, 0}, {0, 0, 1001 / 999.0f, 1}, {0, 2, 0, 0}, {0, 0, -2000 / 999.0f, 0}},
                     flat = {{0.1f, 0, 0, 0}, {0, 0, 2 / 999.0f, 0}, {0, 0.2f, 0, 0}, {0, 0, -1001 / 999.0f, 1}};
-    for (const auto& [matrix, code] : {std::pair(perspective, ErrorCode::not_a_projection),
-                                       std::pair(flat, ErrorCode::image_axes_rotated)}) {
-        CHECK(refusal(matrix) == code);
-        const std::string text = View::from_projection(matrix, full_hd).error().message();
-        CHECK(text.ends_with("change the axes of both matrices"));
-        const auto summary = View::from_projection(matrix * to_z_up, full_hd)->summary();
+    for (const glm::mat4& along_y : {perspective, flat}) {
+        const glm::mat4 along_x(along_y[1], along_y[0], along_y[2], along_y[3]),
+            reordered(along_y[0], along_y[2], along_y[1], along_y[3]);
+        CHECK((reordered == glm::mat4(along_x[1], along_x[2], along_x[0], along_x[3])));
+        const auto text = [](const glm::mat4& matrix) -> std::string {
+            return View::from_projection(matrix, full_hd).error().message();
+        };
+        CHECK(refusal(along_x) == ErrorCode::looks_along_x);
+        CHECK(refusal(along_y) == ErrorCode::looks_along_y);
+        CHECK(text(along_x).find("in the order y, z, x, w") != std::string::npos);
+        CHECK(text(along_y).find("in the order x, z, y, w") != std::string::npos);
+        const auto summary = View::from_projection(reordered, full_hd)->summary();
         CHECK(summary.near_depth == doctest::Approx(1).epsilon(1e-4));
         CHECK(summary.far_depth == doctest::Approx(1000).epsilon(1e-4));
-        CHECK(summary.looks_down_negative_z);
+        CHECK(!summary.looks_down_negative_z);
         CHECK(!summary.y_flipped);
     }
 }
@@ -334,7 +400,7 @@ std::vector<Projected> all_kinds() {
     glm::dmat4 flipped = glm::perspectiveRH_ZO(0.7, 0.8, 0.1, 100.0);
     flipped[0][0] = -flipped[0][0];
     flipped[1][1] = -flipped[1][1];
-    return {
+    std::vector<Projected> all = {
         {glm::dmat4(glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 100.0f)), -1},
         {jittered, -1},
         {flipped, -1},
@@ -346,6 +412,16 @@ std::vector<Projected> all_kinds() {
         {glm::orthoRH_NO(-4.0, 9.0, -3.0, 5.0, 0.1, 100.0), -1, false},
         {glm::orthoLH_ZO(-4.0, 4.0, 3.0, -3.0, -50.0, 100.0), 1, false},
     };
+    for (std::size_t i = 0, upright = all.size(); i < 2 * upright; ++i) {  // turned by 90 and 270 degrees
+        Projected made = all[i / 2];
+        const double up = i % 2 == 0 ? 1 : -1;
+        for (int column = 0; column < 4; ++column) {
+            const glm::dvec4& of = all[i / 2].matrix[column];
+            made.matrix[column] = {up * of.y, -up * of.x, of.z, of.w};
+        }
+        all.push_back(made);
+    }
+    return all;
 }
 
 /// Checks the pixel coordinates of a point against their definition: matrix, division by w, viewport.
@@ -384,8 +460,10 @@ TEST_CASE("a point of view space lies where the matrix puts it, and back") {
             for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
                 const auto view = View::from_projection(
                     made.matrix, viewport,
-                    {.tile_size = 17, .clip_depth = ClipDepth::zero_to_one, .origin = origin});
+                    {.tile_size = 17, .max_tiles = viewport.width == 3 ? 90 : 0,
+                     .clip_depth = ClipDepth::zero_to_one, .origin = origin});
                 REQUIRE(view);
+                CHECK(view->turned() == (made.matrix[0][0] == 0));
                 for (int i = 0; i < 200; ++i) {
                     const double distance = depth(random), reach = made.perspective ? distance : 5;
                     const lightbin::ViewPoint point = {side(random) * reach, side(random) * reach,

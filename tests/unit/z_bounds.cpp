@@ -34,6 +34,45 @@ TEST_CASE("tiles of which 8 samples a pixel are more than 32 bits count") {
     }
 }
 
+TEST_CASE("bounds of numbers of tiles and of turned images are those of each tile's own pixels") {
+    const float inf = std::numeric_limits<float>::infinity();
+    std::mt19937 random(4);
+    const glm::mat4 upright = glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 1000.0f);
+    glm::mat4 matrices[] = {upright, upright, glm::orthoRH_NO(-3.0f, 5.0f, -2.0f, 2.0f, 1.0f, 80.0f)};
+    for (glm::vec4* const column : {&matrices[1][0], &matrices[2][0]})
+        for (int i = 0; i < 4; ++i)
+            column[i] = {column[i].y, -column[i].x, column[i].z, column[i].w};
+    for (const glm::mat4& matrix : matrices)
+        for (const auto [width, height, columns, rows] :
+             {std::array{37, 21, 5, 4}, {37, 21, 0, 0}, {37, 21, 50, 1}, {1, 1, 3, 2}, {600, 3, 7, 3},
+              {1, 40, 1, 41}}) {
+            const View view = *View::from_projection(matrix, {width, height},
+                                                     {.tile_size = 8, .columns = columns, .rows = rows});
+            CHECK(view.turned() == (&matrix != &matrices[0]));
+            std::vector<float> depth(static_cast<std::size_t>(width * height) * 2);
+            for (float& sample : depth)
+                sample = static_cast<float>(random() >> 8) / 0x1p24f;
+            const Reduced found = reduce(view, {.depth = depth, .samples = 2});
+            std::vector<float> min(view.tile_count(), inf), max(view.tile_count(), -inf);
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    for (const int sample : {0, 1}) {
+                        const auto [tx, ty] = *view.tile_of_pixel(x, y);
+                        const auto at = static_cast<std::size_t>(ty * view.tiles_x() + tx);
+                        const double window =
+                            static_cast<double>(depth[static_cast<std::size_t>((y * width + x) * 2 + sample)]);
+                        // As DepthFormat::float32 widens it.
+                        const DepthInterval of = view.view_depths(
+                            window < 0x1p-126 ? 0 : window * (1 - 0x1p-23),
+                            (std::min)((std::max)(window * (1 + 0x1p-23), 0x1p-126), 1.0));
+                        min[at] = (std::min)(min[at], of.min);
+                        max[at] = (std::max)(max[at], of.max);
+                    }
+            CHECK(found.min == min);
+            CHECK(found.max == max);
+        }
+}
+
 TEST_CASE("sizes that do not fit are errors that name what is needed") {
     const View view = test::view({64, 48}, 16);
     const std::vector<float> depth(64 * 48);

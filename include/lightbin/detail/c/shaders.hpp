@@ -60,7 +60,7 @@ lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
             LIGHTBIN_MEMBER(list_check), LIGHTBIN_MEMBER(window), LIGHTBIN_MEMBER(push_constants),
             LIGHTBIN_MEMBER(texture_width), LIGHTBIN_MEMBER(max_tiles), LIGHTBIN_MEMBER(max_entries),
             LIGHTBIN_MEMBER(max_slices), LIGHTBIN_MEMBER(uniform_block_bytes), LIGHTBIN_MEMBER(views),
-            LIGHTBIN_MEMBER(masks));
+            LIGHTBIN_MEMBER(masks), LIGHTBIN_MEMBER(columns_and_rows), LIGHTBIN_MEMBER(turned));
     if (result.error == LIGHTBIN_OK && given.slots_given != 0)
         first_error(LIGHTBIN_MEMBER(tiles), LIGHTBIN_MEMBER(lists), LIGHTBIN_MEMBER(grid), LIGHTBIN_MEMBER(slices),
                     LIGHTBIN_MEMBER(bins), LIGHTBIN_MEMBER(view));

@@ -29,7 +29,8 @@ inline lightbin_result read_view(const lightbin_view_options* options, std::opti
     if (result.error == LIGHTBIN_OK)
         result = first_error(read_member(given.projection, projection, "options.projection"),
                              LIGHTBIN_MEMBER(tile_size), LIGHTBIN_MEMBER(clip_depth), LIGHTBIN_MEMBER(origin),
-                             LIGHTBIN_MEMBER(reversed_z));
+                             LIGHTBIN_MEMBER(reversed_z), LIGHTBIN_MEMBER(columns), LIGHTBIN_MEMBER(rows),
+                             LIGHTBIN_MEMBER(max_tiles));
     if (result.error != LIGHTBIN_OK) return result;
     const auto made = View::from_projection(projection, {given.width, given.height}, known);
     if (!made) return refused(made.error());
@@ -121,7 +122,8 @@ lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_
                       summary.orthographic, summary.reversed_z, of.near_depth(), of.far_depth(), summary.x_flipped,
                       summary.y_flipped, summary.looks_down_negative_z, summary.looks_transposed,
                       summary.looks_like_view_matrix, summary.looks_turned, summary.looks_behind,
-                      summary.looks_zero_to_one, summary.pixels_not_square, summary.viewport_empty, summary.oblique},
+                      summary.looks_zero_to_one, summary.pixels_not_square, summary.viewport_empty, summary.oblique,
+                      summary.turned},
                      info);
     });
 }

@@ -69,6 +69,7 @@ inline Result<ShaderText> reduce_shader(const ReduceOptions& options) {
     // samples has x > y.
     //
     // `pixel` widens a tile's range of window depths by the samples of the tile's pixel i, counted row by row.
+    // `first_pixel` is TileSplit::first_pixel(). GridConstants says what the upper bits of `grid` tell of the view.
     //
     // View depths, and with an oblique near plane what reduce_constants() says, are compared as they are, negative ones
     // too. So `order` makes integers of floats, in the same order, and `number` floats of them.
@@ -150,18 +151,33 @@ vec2 $view_depths(uvec2 range) {
 void $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {
     uvec2 pixel = first + uvec2(i % size.x, i / size.x);
     vec2 place = vec2(float(pixel.x), float(pixel.y)) + 0.5 - 0.5 * vec2(float($grid.z), float($grid.w));    @if tilted
-    pixel.y = $grid.w - 1u - pixel.y;                               @if flip_y
+    uint height = $grid.w;
+    if (($grid.x & 0x40000000u) != 0u) {
+        pixel = pixel.yx;
+        height = $grid.z;
+    }
+    pixel.y = height - 1u - pixel.y;                                @if flip_y
     ivec2 at = ivec2(int(pixel.x), int(pixel.y));                   @if !viewport_corner
     ivec2 at = ivec2(int(pixel.x), int(pixel.y)) + $corner;         @if viewport_corner
     { $sample(&range, @texel.x@place); }                                          @if !many
     for (int s = 0; s < @samples; s += 1) { $sample(&range, @texel.x@place); }    @if many
 }
 
+uvec2 $first_pixel(uvec2 tile) {
+    uint size = $grid.x & 0x3fffffffu;
+    uvec2 first = tile * size;
+    if ($grid.x >= 0x80000000u) {
+        uvec2 tiles = uvec2($grid.y, size);
+        first = (2u * tile * $grid.zw + tiles - uvec2(1u, 1u)) / (2u * tiles);
+    }
+    return min(first, $grid.zw);
+}
+
 )");
     if (!compute) {
         writer.add(R"(vec2 $reduce(uvec2 tile) {
-    uvec2 first = tile * $grid.x;
-    uvec2 size = min(uvec2($grid.x, $grid.x), $grid.zw - first);
+    uvec2 first = $first_pixel(tile);
+    uvec2 size = $first_pixel(tile + uvec2(1u, 1u)) - first;
     uvec2 range = uvec2(0xffffffffu, 0u);
     for (uint i = 0u; i < size.x * size.y; i += 1u) { $pixel(&range, first, size, i); }
     return $view_depths(range);
@@ -181,8 +197,8 @@ void $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {
     writer.declare_shared("range_ends", 2, true);
     writer.add(R"(
 void $run(uvec2 tile, uint thread) {
-    uvec2 first = tile * $grid.x;
-    uvec2 size = min(uvec2($grid.x, $grid.x), $grid.zw - first);
+    uvec2 first = $first_pixel(tile);
+    uvec2 size = $first_pixel(tile + uvec2(1u, 1u)) - first;
     uvec2 range = uvec2(0xffffffffu, 0u);
     if (thread == 0u) {
         atomicStore(&$range_ends[0], range.x);

@@ -96,7 +96,11 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
                                                                      : TexelFormat::r32ui;
     const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
     const std::uint32_t width = textures ? options.texture_width : 0;
-    const bool several = options.views > 1, fixed = options.tile_size != 0;
+    const bool several = options.views > 1, counted = options.columns_and_rows, turned = options.turned,
+               fixed = options.tile_size != 0 && !counted;
+    // The first two bits of the constant `grid`, by which GridConstants tells the kinds of views apart.
+    const std::uint32_t kind = (counted ? 2u : 0u) + (turned ? 1u : 0u),
+                        size = min_of(static_cast<std::uint32_t>(options.tile_size), most_tile_size);
     std::vector<ShaderBuffer> buffers;
     if (table)
         buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
@@ -121,14 +125,18 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
 
     writer.set({{"masks", masks}, {"table", table}, {"sliced", sliced}, {"binned", binned},
                 {"clusters", sliced && !binned}, {"several", several}, {"fixed", fixed}, {"flip_y", options.flip_y},
+                {"counted", counted}, {"turned", turned},
                 {"viewport_corner", options.viewport_corner}, {"has_findLSB", dialect.storage_buffers},
                 {"tiles_in_texture", textures && !options.tiles_in_uniform_block},
                 {"length_known", table && !binned}, {"searched", masks && binned},
                 {"ids_of_32", one_id || format.ids == IdWidth::u32},
                 {"ids_of_16", !one_id && format.ids == IdWidth::u16},
                 {"ids_of_8", !one_id && format.ids == IdWidth::u8}});
-    writer.set("size", fixed ? std::to_string(options.tile_size) + "u" : "$grid.x");
-    writer.set("is_size", fixed ? " && $grid.x == @size" : "");
+    writer.set("size", fixed ? std::to_string(size) + "u" : kind == 0 ? "$grid.x" : "($grid.x & 0x3fffffffu)");
+    writer.set("is_grid", fixed ? "$grid.x == " + std::to_string(kind << 30 | size) + "u"
+                                : "($grid.x >> 30u) == " + std::to_string(kind) + "u");
+    writer.set("rows", counted ? "@size" : "(($grid.w - 1u) / @size + 1u)");
+    writer.set("centre", "(2u * here + uvec2(1u, 1u)) * uvec2($grid.y, @size)");
     writer.set("sentinel", std::to_string(countable_lights(format)) + "u");
     writer.set("capacity", std::to_string(format.capacity) + "u");
     writer.set("texel_of_tile", writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))"));
@@ -161,9 +169,11 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     // to a large unsigned number, and so stays outside.
     const std::string here = R"(    uvec2 here = pixel;                      @if !viewport_corner
     uvec2 here = pixel - uvec2($corner);     @if viewport_corner
-    here.y = $grid.w - 1u - here.y;          @if flip_y
+    here.y = $grid.w - 1u - here.y;          @if flip_y !turned
+    here.y = $grid.z - 1u - here.y;          @if flip_y turned
+    here = here.yx;                          @if turned
 )";
-    // `tile` divides by at least 1: until the program sets `grid`, the tile size in it is 0.
+    // `tile` divides by at least 1: until the program sets `grid`, it is 0. TileSplit::tile_of() is the same.
     //
     // `slice` starts from the estimate, in which a device may round the logarithm as it likes, and steps from there
     // until the boundaries enclose the depth. They are compared as integers in the same order as the floats, because
@@ -173,8 +183,9 @@ inline Result<ShaderText> shader_snippet(const SnippetOptions& options) {
     writer.add(R"(
 // The tile that a pixel lies in.
 uvec2 $tile(uvec2 pixel) {
-)" + here + R"(    return here / @size;             @if fixed
-    return here / max(@size, 1u);    @if !fixed
+)" + here + R"(    return here / @size;                                    @if fixed
+    return here / max(@size, 1u);                           @if !fixed !counted
+    return @centre / max(2u * $grid.zw, uvec2(1u, 1u));     @if counted
 }
 )");
     if (sliced)
@@ -231,15 +242,16 @@ $own_cursor $own_begin(uvec2 pixel, float view_depth@view_parameter) {
     c.ids = 0u;                  @if masks
     c.bin = uvec2(0u, 0u);       @if masks binned
     c.last = 0u;                 @if !masks binned
-    if (here.x < $grid.z && here.y < $grid.w@is_size@is_view) {
-        uvec2 tile = here / @size;
+    if (here.x < $grid.z && here.y < $grid.w && @is_grid@is_view) {
+        uvec2 tile = here / @size;                                  @if !counted
+        uvec2 tile = @centre / (2u * $grid.zw);                     @if counted
         uint slice = $slice(view_depth);                            @if sliced
         slice += view * ($slices[3u] + 1u);                         @if sliced several
-        tile.y += slice * (($grid.w - 1u) / @size + 1u);            @if clusters
-        tile.y += view * (($grid.w - 1u) / @size + 1u);             @if !clusters several
+        tile.y += slice * @rows;                                    @if clusters
+        tile.y += view * @rows;                                     @if !clusters several
         uint words = $masks[0u];                                                        @if masks
         c.masks = uvec2(1u + tile.x * words, 1u + ($grid.y + 1u + tile.y) * words);     @if masks
-        c.ids = 1u + ($grid.y + 2u + ($grid.w - 1u) / @size) * words;                   @if masks
+        c.ids = 1u + ($grid.y + 1u + @rows) * words;                                    @if masks
         uint bin = c.ids + 32u * words + 2u * slice;                                    @if masks binned
         c.bin = uvec2($masks[bin], $masks[bin + 1u]);                                   @if masks binned
         c.at = c.bin.x >> 5u;                                                           @if masks binned

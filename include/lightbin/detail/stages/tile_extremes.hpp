@@ -34,29 +34,30 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
 /// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of
 /// samples to its extremes, as many columns as fit in a buffer on the stack; then each tile's columns are reduced.
 ///
-/// tile_columns  samples across a tile
-/// skipped       samples of this value are left out; NaN: none are
+/// split    how the row's pixels are divided into tiles
+/// samples  samples per pixel
+/// skipped  samples of this value are left out; NaN: none are
 template <class Finish>
-void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped, Finish finish) {
+void reduce_tile_row(Isa isa, const DepthRows& row, const TileSplit& split, std::size_t samples, float skipped,
+                     Finish finish) {
     constexpr std::size_t buffer_size = 512;
-    const std::size_t block = tile_columns < buffer_size ? buffer_size / tile_columns * tile_columns : buffer_size;
     float lower[buffer_size], upper[buffer_size];
-    Extremes tile;
-    for (std::size_t first = 0; first < row.columns; first += block) {
-        const std::size_t end = min_of(first + block, row.columns);
-        const DepthRows part = {row.samples + first, row.pitch, row.rows, end - first};
-        depth_kernel(isa, part.columns)(part, skipped, lower, upper);
-        for (std::size_t column = first; column < end;) {
-            const std::size_t index = column / tile_columns;
-            const std::size_t tile_end = min_of((index + 1) * tile_columns, row.columns);
-            const std::size_t stop = min_of(tile_end, end);
-            tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
-            if (stop == tile_end) {
-                finish(index, tile);
-                tile = {};
+    std::size_t begin = 0, end = 0;  // the columns in the buffer
+    for (int index = 0; index < split.count(); ++index) {
+        Extremes tile;
+        const std::size_t tile_end = static_cast<std::size_t>(split.first_pixel(index + 1)) * samples;
+        for (std::size_t column = static_cast<std::size_t>(split.first_pixel(index)) * samples; column < tile_end;) {
+            if (column == end) {
+                begin = end;
+                end = min_of(begin + buffer_size, row.columns);
+                const DepthRows part = {row.samples + begin, row.pitch, row.rows, end - begin};
+                depth_kernel(isa, part.columns)(part, skipped, lower, upper);
             }
+            const std::size_t stop = min_of(tile_end, end);
+            tile = extremes(lower + (column - begin), upper + (column - begin), stop - column, tile);
             column = stop;
         }
+        finish(static_cast<std::size_t>(index), tile);
     }
 }
 

@@ -110,10 +110,15 @@ decltype(auto) with_options_from(const AdvicePlan& plan, Visit& visit) {
     return visit.template operator()<options>();
 }
 
+/// The size of the image that tile columns and rows divide: with a turned projection, width and height are exchanged.
+inline ImageSize size_of_grid(const View& view) {
+    return {camera_of(view).x.split.side, camera_of(view).y.split.side};
+}
+
 /// Calls visit(x, y, low, high) for the tiles in which something may be drawn: the tile's first pixel and its Z bounds.
 /// Tiles whose minimum exceeds their maximum are empty.
 template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
-    const auto [width, height] = view.viewport();
+    const auto [width, height] = size_of_grid(view);
     const int size = view.tile_size();
     std::size_t tile = 0;
     const auto bound = [&](std::span<const float> side, float unbounded) {
@@ -172,6 +177,7 @@ auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orth
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
 LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
                      const LightRange& lights, const AdviceCosts& costs, ForEachVisible for_each_visible) {
+    if (view.tile_size() == 0) return Error{ErrorCode::tile_size_out_of_range};
     // The grids: tiles of the view's tile size, of 2, 4 and 8 times that size while that is smaller than the screen,
     // and one tile as large as the screen.
     std::vector<WeighedGrid> grids;
@@ -311,7 +317,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCo
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
-    const ImageSize window = view.viewport();
+    const ImageSize window = detail::size_of_grid(view);
     const int size = view.tile_size();
     const Slices one = *Slices::from_boundaries({});  // read by no plan
     return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
@@ -341,9 +347,11 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
             const float* depth = samples.depths.data();
             for (int y = 0; y < grid.height; ++y)
                 for (int x = 0; x < grid.width; ++x, ++depth)
-                    if (std::isfinite(*depth))
-                        visit(pixel(x, grid.width, window.width), pixel(y, grid.height, window.height),
-                              *depth, pixels);
+                    if (std::isfinite(*depth)) {
+                        int column = pixel(x, grid.width, window.width), row = pixel(y, grid.height, window.height);
+                        if (view.turned()) std::swap(column, row);
+                        visit(column, row, *depth, pixels);
+                    }
         });
 }
 

@@ -30,10 +30,10 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 inline constexpr float flushed = 0x1p-120f;
 
 /// Finds a tile's two edges along an image axis, `low` rounded down and `high` rounded up: slopes with a perspective
-/// projection, view-space coordinates with an orthographic one.
+/// projection, view-space coordinates with an orthographic one. All of the tile's pixels lie between them.
 inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
     constexpr double most = static_cast<double>(FLT_MAX);
-    const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1);
+    const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1) + axis.split.overhang();
     const double end = min_of(tile + 1.0, static_cast<double>(axis.limit));
     double from = (tile - axis.offset - error) / axis.scale, to = (end - axis.offset + error) / axis.scale;
     from -= abs_of(from) * 0x1p-21 + 0x1p-100;

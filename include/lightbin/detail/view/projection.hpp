@@ -125,18 +125,28 @@ inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     return {};
 }
 
+/// Returns a matrix with other columns of `m` in place of its first three.
+inline Matrix with_columns(const Matrix& m, int x, int y, int z) {
+    const int columns[] = {x, y, z, 3};
+    return from_entries([&]<int column, int row>() { return m[columns[column]][row]; });
+}
+
 /// A View's projection: a matrix, and what was derived from it for a viewport and a tile size.
 struct Projection {
     Matrix matrix = {};
+    /// The image is turned by 90 or 270 degrees: the x of clip space is made of view-space y, and its y of x. The axis
+    /// Camera::x, to which tile columns belong, is the y axis of the image then.
+    bool turned = false;
     Camera camera;
     DepthMap depth;
 
     /// Sets one image axis from entries p, q and w of the matrix. A device coordinate
     /// is  ndc = c * p / w + q / w,  where c is a point's slope x / depth (or y / depth), or in orthographic views its
-    /// coordinate. The viewport's `side` pixels are ndc -1 to 1. Returns false if the scale is too small or too large.
-    bool set_axis(ImageAxis& axis, double p, double q, double w, int side, int tile_size) const {
-        const double tiles = static_cast<double>(side) / tile_size;
-        axis.tiles = side / tile_size + (side % tile_size != 0 ? 1 : 0);
+    /// coordinate. The viewport's side is ndc -1 to 1. Returns false if the scale is too small or too large.
+    bool set_axis(ImageAxis& axis, double p, double q, double w, const TileSplit& split) const {
+        const double tiles = split.tiles_of(split.side);
+        axis.split = split;
+        axis.tiles = split.count();
         axis.sign = p < 0 ? -1.0f : 1.0f;
         axis.scale = abs_of(p) / w * (0.5 * tiles);
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
@@ -147,14 +157,15 @@ struct Projection {
         // Inside the viewport |scale * slope| <= |offset| + tiles, as scale * slope + offset is between 0 and `tiles`.
         // A margin of 16u of that also covers the rounding of `scale` and `offset` in double and the addition of the
         // margin itself. The term 2^-80 scale is for callers who flush denormal numbers to zero.
-        axis.margin = float_above(0x1p-20 * (abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+        axis.margin = float_above(0x1p-20 * (abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale +
+                                  split.overhang());
         if (!camera.orthographic && axis.scale > 0) {
             const double slope = max_of(tiles - axis.offset, axis.offset) / axis.scale;
             const double length = root_of(1 + slope * slope);
             axis.normal = static_cast<float>(1 / length);
             axis.normal_z = static_cast<float>(-slope / length);
         }
-        if (side == 0) {
+        if (split.side == 0) {
             axis.limit = -1;  // an empty viewport contains no coordinate
             return p != 0;
         }
@@ -180,17 +191,25 @@ struct Projection {
 
     /// Finds `camera` and `depth` from `matrix` and depth.zero_to_one. Returns why the matrix is refused, or nothing.
     ///
+    /// across      how tiles divide the viewport's width
+    /// down        how they divide its height
     /// y_up        tile rows count up from the side of the image where device y is -1
     /// reversed_z  read for orthographic matrices alone: a perspective matrix shows whether Z is reversed
     ///
     /// Not inlined, so that no operation moves out of the lifetime of the local `environment`, which rounds to nearest.
-    LIGHTBIN_NOINLINE std::optional<ErrorCode> read(int width, int height, int tile_size, bool y_up,
+    LIGHTBIN_NOINLINE std::optional<ErrorCode> read(const TileSplit& across, const TileSplit& down, bool y_up,
                                                     bool reversed_z) {
         const DefaultFloatEnvironment environment;
-        const Matrix& m = matrix;
+        Matrix m = matrix;
         if (!finite(m)) return ErrorCode::matrix_not_finite;
+        turned = m[0][0] == 0 && m[1][1] == 0 && m[0][1] != 0 && m[1][0] != 0;
+        for (int column = 0; turned && column < 4; ++column)
+            std::swap(m.columns[column][0], m.columns[column][1]);
         if (const auto wrong = wrong_shape(m)) {
-            return wrong_shape(transposed(m)) ? *wrong : ErrorCode::projection_transposed;
+            if (!wrong_shape(transposed(m))) return ErrorCode::projection_transposed;
+            if (!wrong_shape(with_columns(m, 1, 2, 0))) return ErrorCode::looks_along_x;
+            if (!wrong_shape(with_columns(m, 0, 2, 1))) return ErrorCode::looks_along_y;
+            return *wrong;
         }
         const double w_z = m[2][3], w_1 = m[3][3];
         const bool orthographic = camera.orthographic = w_z == 0;
@@ -200,11 +219,12 @@ struct Projection {
         const double w = orthographic ? w_1 : abs_of(w_z);
         const bool forward = orthographic ? (m[2][2] > 0) != reversed_z : w_z > 0;
         camera.z_sign = forward ? 1.0f : -1.0f;
-        const double flip_z = forward ? 1.0 : -1.0, up = y_up ? 1.0 : -1.0;
+        const double flip_z = forward ? 1.0 : -1.0, up = y_up ? 1.0 : -1.0,
+                     up_x = turned ? up : 1, up_y = turned ? 1 : up;
         const double offset_x = orthographic ? m[3][0] : flip_z * m[2][0];
         const double offset_y = orthographic ? m[3][1] : flip_z * m[2][1];
-        if (!set_axis(camera.x, m[0][0], offset_x, w, width, tile_size) ||
-            !set_axis(camera.y, up * m[1][1], up * offset_y, w, height, tile_size))
+        if (!set_axis(camera.x, up_x * m[0][0], up_x * offset_x, w, turned ? down : across) ||
+            !set_axis(camera.y, up_y * m[1][1], up_y * offset_y, w, turned ? across : down))
             return ErrorCode::degenerate_scale;
         if (max_of(abs_of(camera.x.offset), abs_of(camera.y.offset)) > 0x1p80)
             return ErrorCode::image_offset_out_of_range;
@@ -213,8 +233,8 @@ struct Projection {
         depth.z_offset = m[3][2];
         depth.w_scale = orthographic ? 0 : w;
         depth.w_offset = orthographic ? w : 0;
-        depth.add_tilt(depth.tilt_x, m[0][2], m[0][0], offset_x, w);
-        depth.add_tilt(depth.tilt_y, m[1][2], up * m[1][1], up * offset_y, w);
+        depth.add_tilt(depth.tilt_x, m[0][2], up_x * m[0][0], up_x * offset_x, w);
+        depth.add_tilt(depth.tilt_y, m[1][2], up_y * m[1][1], up_y * offset_y, w);
         depth.reversed = orthographic ? reversed_z : depth.z_offset > 0;
         return set_depth_range();
     }
@@ -223,17 +243,19 @@ struct Projection {
     ViewSummary summary(int width, int height, int tile_size) const {
         const bool flat = camera.orthographic;
         const Matrix& m = matrix;
+        // The entry that scales the image along an axis.
+        const auto scale = [&](int axis) { return m[turned ? 1 - axis : axis][axis]; };
         // Returns the image's width or height in degrees (orthographic: in view-space units). It comes from the matrix,
         // as ImageAxis::scale is 0 for an empty viewport.
         const auto size = [&](int axis) {
             const double w = flat ? depth.w_offset : depth.w_scale,
                          offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];
-            const double low = (-w - offset) / m[axis][axis], high = (w - offset) / m[axis][axis];
+            const double low = (-w - offset) / scale(axis), high = (w - offset) / scale(axis);
             return abs_of(flat ? high - low
                                : (arctan_of(high) - arctan_of(low)) * (180 / 3.14159265358979324));
         };
-        // On a plane of equal depth the image is 2 w / m[0][0] wide and 2 w / m[1][1] high.
-        const double aspect = abs_of(m[1][1] / m[0][0]);
+        // On a plane of equal depth the image is 2 w / scale(0) wide and 2 w / scale(1) high.
+        const double aspect = abs_of(scale(1) / scale(0));
         const auto is_one = [](double x) { return abs_of(x) == 1; };
         const bool never_minus_one = !flat && !depth.oblique() && depth.reversed && !depth.zero_to_one &&
                                      depth.z_scale + 0.999 * depth.w_scale > 0;
@@ -250,11 +272,12 @@ struct Projection {
                 .near_depth = nearest(), .far_depth = farthest(),
                 .looks_down_negative_z = camera.z_sign < 0, .reversed_z = depth.reversed, .oblique = depth.oblique(),
                 .near_plane = {plane[0] / length, plane[1] / length, plane[2] / length, plane[3] / length},
-                .x_flipped = m[0][0] < 0, .y_flipped = m[1][1] < 0,
+                .x_flipped = scale(0) < 0, .y_flipped = scale(1) < 0, .turned = turned,
                 .width = width, .height = height, .tile_size = tile_size,
+                .tiles_x = camera.x.tiles, .tiles_y = camera.y.tiles,
                 .looks_transposed = !flat && one_is_transposed(m),
-                .looks_like_view_matrix = flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
-                .looks_turned = m[0][0] < 0 && m[1][1] < 0,
+                .looks_like_view_matrix = flat && is_one(scale(0)) && is_one(scale(1)) && is_one(m[2][2]),
+                .looks_turned = !turned && scale(0) < 0 && scale(1) < 0,
                 .looks_behind = flat && camera.far_depth <= 0,
                 .looks_zero_to_one = never_minus_one,
                 .pixels_not_square = width > 0 && height > 0 && !(width_off <= 0.02 * width),
