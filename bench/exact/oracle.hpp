@@ -426,9 +426,9 @@ private:
                 }
                 endless |= seen.contains_none() || !seen.max;
                 if (seen.contains_none()) continue;
-                if (range_.empty || *seen.min < *range_.min) range_.min = seen.min;
-                if (range_.empty || (seen.max && *seen.max > *range_.max)) range_.max = seen.max;
                 range_.empty = false;
+                if (!range_.min || *seen.min < *range_.min) range_.min = seen.min;
+                if (!range_.max || (seen.max && *seen.max > *range_.max)) range_.max = seen.max;
             }
         if (endless) range_.max.reset();
     }
