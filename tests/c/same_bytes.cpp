@@ -432,7 +432,7 @@ TEST_CASE("C: a view knows what it knows in C++") {
     const lightbin_view_info expected = {
         sizeof info, 640, 360, 24, cpp_view.tiles_x(), cpp_view.tiles_y(), false, false, cpp_view.near_depth(),
         cpp_view.far_depth(), summary.x_flipped, summary.y_flipped, true, summary.looks_transposed, false, false,
-        summary.looks_behind, summary.looks_zero_to_one, summary.pixels_not_square, false, false};
+        summary.looks_behind, summary.looks_zero_to_one, summary.pixels_not_square, false, false, false};
     CHECK(same(info, expected));
     char line[600];
     lightbin_view_text(view.get(), line, sizeof line);
