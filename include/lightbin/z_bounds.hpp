@@ -29,8 +29,8 @@ enum class DepthFormat : std::uint8_t {
     float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
     unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
     unorm16,  ///< a 16-bit integer n that stands for the depth n / (2^16 - 1)
-    /// A 32-bit float that is no window depth but the view depth itself, such as one converted from a logarithmic depth:
-    /// within 2^-18 of the fragment's. Background is +inf, and NaN may be any depth, -inf to +inf.
+    /// A 32-bit float that is no window depth but the view depth itself, such as one converted from a logarithmic
+    /// depth: within 2^-18 of the fragment's. Background is +inf, and NaN may be any depth, -inf to +inf.
     view_depth,
 };
 
