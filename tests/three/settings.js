@@ -184,6 +184,11 @@ export const settings = {
         ...mirror(Refractor, [14, 14], true, 0, 2, 0), draw: () => stage.draw(other)}),
     'Water': () => mirror(Water, [14, 14], true, 0, -4.7, 0),
     'Water, orthographic': () => ({...mirror(Water, [14, 14], true, 0, -4.7, 0), draw: () => stage.draw(other)}),
+    'an orthographic z row of the other sign': () => {
+        const turned = other.clone(), {elements} = turned.projectionMatrix;
+        for (const i of [10, 14]) elements[i] *= -1;
+        return {draw: () => stage.draw(turned), undo: () => {}};
+    },
     'two eyes': eyes,
     'two eyes and a mirror': () => eyes(mirror(Reflector, [16, 8], false, 0, -1, -8)),
     'two eyes and glass, scale 0.5': () => eyes(glass(0.5, 0, 0, 200, 125)),
