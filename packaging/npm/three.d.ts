@@ -33,17 +33,16 @@ export interface ClusteredLightsOptions {
 export class ClusteredLights {
     constructor(lightbin: Lightbin, options?: ClusteredLightsOptions);
     /**
-     * Begins a picture: makes the lists of a camera, or of each camera of an ArrayCamera, and uploads them. Matrices must
-     * be current:
-     * `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The picture ends when
-     * three.js calls `scene.onAfterRender`, which is wrapped until then, and at the latest with the task. Pictures
-     * within pictures have lists of their own.
+     * Begins a picture: makes the lists of a camera, or of each camera of an ArrayCamera, and uploads them. Matrices
+     * must be current: `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The
+     * picture ends when three.js calls `scene.onAfterRender`, which is wrapped until then, and at the latest with the
+     * task. Pictures within pictures have lists of their own.
      *
      * Where it can't make lists, it makes one list of all lights, and console.warn() says why, once for each cause.
      */
     readonly update: (renderer: WebGLRenderer, scene: Object3D, camera: Camera) => void;
-    /** The lists of the last update, of an ArrayCamera's last camera; where these are one list of all lights, those of a
-     * viewport of one pixel. */
+    /** The lists of the last update, or those of the last camera if this is an ArrayCamera. Where they are one list of
+     * all lights, they are those of a viewport of one pixel. */
     readonly grid: Grid;
     /** With the option `masks`, what the last update made in place of `grid`. */
     readonly masks: Masks;

@@ -67,8 +67,9 @@ const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
 const no_pixel = new Uint32Array(4);
 const place = new Vector3(), axis = new Vector3(), viewport = new Vector4();
 
-/// Where in its target three.js draws a picture, or one camera's part of it. That camera knows it better than the
-/// renderer, which reports the whole target after a mirror; but it has no viewport while the picture behind glass is drawn.
+/// The part of its target that three.js draws to by a camera. After a mirror's picture, the renderer reports the whole
+/// target, though the viewport is again that of the ArrayCamera's camera. This has none while three.js draws what lies
+/// behind glass, to a target of its own.
 const viewport_of = ({renderer, several}, camera) =>
     several && camera?.viewport || renderer.getCurrentViewport(viewport);
 
@@ -107,7 +108,7 @@ export class ClusteredLights {
         const picture = this.#begin(renderer, scene), points = [], spots = [];
         this.#patch(scene.overrideMaterial);
         this.#collect(scene, camera, points, spots);
-        // By each camera of an ArrayCamera, three.js draws all objects to that camera's viewport, one after the other.
+        // three.js draws an ArrayCamera's picture camera by camera, each with all objects in that camera's viewport.
         picture.several = camera.isArrayCamera && camera.cameras.length > 0;
         picture.cameras = picture.several ? [...camera.cameras] : [camera];
         picture.cameras.forEach((each, i) => {
