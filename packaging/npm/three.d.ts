@@ -27,21 +27,22 @@ export interface ClusteredLightsOptions {
  * and spot lights of a scene, in any number. Lights that cast shadows or have a map stay three.js' own.
  *
  * While a picture is drawn, `layers.test()` of the lights that are taken returns false, so that three.js passes them
- * by. A material reads the lists of the ClusteredLights that first met it. Where a program sets `onBeforeCompile`, it
- * does so before that.
+ * by. A material reads the lists of the ClusteredLights that first met it. Where a program sets the material's
+ * `onBeforeCompile` or `onBeforeRender`, it does so before that.
  */
 export class ClusteredLights {
     constructor(lightbin: Lightbin, options?: ClusteredLightsOptions);
     /**
-     * Begins a picture: makes the lists of a camera and uploads them. Matrices must be current:
-     * `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The picture ends when
-     * three.js calls `scene.onAfterRender`, which is wrapped until then, and at the latest with the task. Pictures
-     * within pictures have lists of their own.
+     * Begins a picture: makes the lists of a camera, or of each camera of an ArrayCamera, and uploads them. Matrices
+     * must be current: `scene.onBeforeRender = lights.update` is a call at the right time, for each picture. The
+     * picture ends when three.js calls `scene.onAfterRender`, which is wrapped until then, and at the latest with the
+     * task. Pictures within pictures have lists of their own.
      *
      * Where it can't make lists, it makes one list of all lights, and console.warn() says why, once for each cause.
      */
     readonly update: (renderer: WebGLRenderer, scene: Object3D, camera: Camera) => void;
-    /** The lists of the last update; where these are one list of all lights, those of a viewport of one pixel. */
+    /** The lists of the last update, or those of the last camera if this is an ArrayCamera. Where they are one list of
+     * all lights, they are those of a viewport of one pixel. */
     readonly grid: Grid;
     /** With the option `masks`, what the last update made in place of `grid`. */
     readonly masks: Masks;

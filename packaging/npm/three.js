@@ -67,6 +67,12 @@ const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]
 const no_pixel = new Uint32Array(4);
 const place = new Vector3(), axis = new Vector3(), viewport = new Vector4();
 
+/// The part of its target that three.js draws to by a camera. After a mirror's picture, the renderer reports the whole
+/// target, though the viewport is again that of the ArrayCamera's camera. This has none while three.js draws what lies
+/// behind glass, to a target of its own.
+const viewport_of = ({renderer, several}, camera) =>
+    several && camera?.viewport || renderer.getCurrentViewport(viewport);
+
 export class ClusteredLights {
     #lightbin;
     #options;
@@ -74,6 +80,7 @@ export class ClusteredLights {
     #view;
     #pictures = [];  // what materials read: in a picture, in a picture that is drawn within it, and so on
     #depth = 0;      // how many pictures are being drawn
+    #camera;         // that of the object that three.js draws now
     #materials = new Set();
     #warnings = new Set();
     #key = `lightbin ${++made}`;
@@ -101,25 +108,37 @@ export class ClusteredLights {
         const picture = this.#begin(renderer, scene), points = [], spots = [];
         this.#patch(scene.overrideMaterial);
         this.#collect(scene, camera, points, spots);
-        this.#write(picture, points, spots, camera);
-        renderer.getCurrentViewport(viewport);
+        // three.js draws an ArrayCamera's picture camera by camera, each with all objects in that camera's viewport.
+        picture.several = camera.isArrayCamera && camera.cameras.length > 0;
+        picture.cameras = picture.several ? [...camera.cameras] : [camera];
+        picture.cameras.forEach((each, i) => {
+            const lists = picture.lists[i] ??= {
+                floats: this.#lightbin.floats(light_floats * lights_per_row), textures: {}};
+            lists.renderer = renderer;
+            this.#write(lists, points, spots, each);
+            this.#make(lists, points.length, spots.length, each, viewport_of(picture, each));
+        });
+    }
+
+    #make(lists, points, spots, {projectionMatrix: {elements}, reversedDepth, far}, {z, w}) {
         try {
-            if (camera.isArrayCamera) throw new Error('an ArrayCamera, as WebXR has, draws several pictures at once');
-            this.#bin(picture, points.length, spots.length, {
-                projection: camera.projectionMatrix.elements, width: Math.trunc(viewport.z),
-                height: Math.trunc(viewport.w), clipDepth: camera.reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
-                reversedZ: camera.reversedDepth === true});
+            this.#bin(lists, points, spots, {
+                projection: elements, width: Math.trunc(z), height: Math.trunc(w),
+                clipDepth: reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
+                // three.js looks down -z, also where an oblique near plane changes the sign of an orthographic z row.
+                reversedZ: elements[10] > 0,
+            }, far);
         } catch (error) {
-            const {array} = picture.floats, count = points.length + spots.length;
+            const {array} = lists.floats, count = points + spots;
             for (let i = 0; i < count; ++i) array[light_floats * i + 3] = Infinity;
-            this.#bin(picture, count, 0, one_pixel);
+            this.#bin(lists, count, 0, one_pixel);
             this.#warn(error);
         }
     }
 
     dispose() {
         while (this.#depth > 0) this.#end();
-        for (const {floats, slices, textures} of this.#pictures)
+        for (const {floats, slices, textures} of this.#pictures.flatMap(({lists}) => lists))
             for (const made of [floats, slices, ...Object.values(textures)]) made?.dispose();
         this.#pictures = [];
         this.#binner?.dispose();
@@ -138,9 +157,7 @@ export class ClusteredLights {
     #begin(renderer, scene) {
         if (this.#depth === 0) queueMicrotask(() => { while (this.#depth > 0) this.#end(); });
         const outer = this.#pictures.slice(0, this.#depth), {onAfterRender} = scene;
-        const picture = this.#pictures[this.#depth] ??= {
-            floats: this.#lightbin.floats(light_floats * lights_per_row), textures: {}};
-        ++this.#depth;
+        const picture = this.#pictures[this.#depth++] ??= {lists: []};
         Object.assign(picture, {renderer, scene, giveBack: undefined});
         if (scene.isScene && !outer.some(picture => picture.scene === scene)) {
             picture.giveBack = () => { scene.onAfterRender = onAfterRender; };
@@ -156,13 +173,14 @@ export class ClusteredLights {
 
     /// The value of a uniform for what three.js draws now.
     #read(name) {
-        const {renderer, grid, textures} = this.#pictures[Math.max(this.#depth - 1, 0)];
+        const picture = this.#pictures[Math.max(this.#depth - 1, 0)];
+        const {grid, textures} = picture.lists[Math.max(picture.cameras.indexOf(this.#camera), 0)];
         if (name === 'grid') return this.#depth > 0 ? grid : no_pixel;
         if (name !== 'viewport') return textures[name];
         // Where the viewport begins, in pixels, of which WebGL drops fractions; and how many pixels of the lists one of
         // its pixels has: not 1 if the lists have one pixel, or while three.js draws what lies behind glass, which it
         // does to a smaller target.
-        const {x, y, z, w} = renderer.getCurrentViewport(viewport);
+        const {x, y, z, w} = viewport_of(picture, this.#camera);
         return viewport.set(Math.trunc(x), Math.trunc(y), grid[2] / Math.trunc(z), grid[3] / Math.trunc(w));
     }
 
@@ -228,48 +246,48 @@ export class ClusteredLights {
     }
 
     /// Makes the lists of point lights and of the spots that follow them, and uploads all that materials read.
-    #bin(picture, points, spots, projection) {
+    #bin(lists, points, spots, projection, far) {
         this.#view.update(projection);
-        this.#slice(picture);
-        const {array} = picture.floats, stride = light_floats;
+        this.#slice(lists, far);
+        const {array} = lists.floats, stride = light_floats;
         const given = [this.#view, {
             spheres: {array, stride, count: points},
             spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
-        }, {slices: picture.slices}];
-        if (this.#options.masks) this.#upload_masks(picture, this.masks = this.#binner.masks(...given));
-        else this.#upload_lists(picture, this.grid = this.#binner.bin(...given));
-        picture.grid = this.#view.gridConstants().subarray(0, 4);
-        const floats = picture.floats.array;  // read anew, as the module's memory may have grown
-        this.#upload(picture, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
+        }, {slices: lists.slices}];
+        if (this.#options.masks) this.#upload_masks(lists, this.masks = this.#binner.masks(...given));
+        else this.#upload_lists(lists, this.grid = this.#binner.bin(...given));
+        lists.grid = this.#view.gridConstants().subarray(0, 4);
+        const floats = lists.floats.array;  // read anew, as the module's memory may have grown
+        this.#upload(lists, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
     }
 
-    #upload_masks(picture, {words, tilesX, tilesY}) {
+    #upload_masks(lists, {words, tilesX, tilesY}) {
         // The room for 1,024 lights, so that the texture stays the same for all numbers up to that.
         const room = 1 + 32 * (tilesX + tilesY + 33) + 2 * this.#options.slices;
-        this.#upload(picture, 'masks', words, words_per_row, rows_of(Math.max(words.length, room)));
+        this.#upload(lists, 'masks', words, words_per_row, rows_of(Math.max(words.length, room)));
     }
 
-    #upload_lists(picture, grid) {
+    #upload_lists(lists, grid) {
         const tile_rows = Math.max(grid.tilesY * grid.slices, 1), id_rows = rows_of(grid.ids.length);
-        if (Math.max(tile_rows, id_rows) > picture.renderer.capabilities?.maxTextureSize)
+        if (Math.max(tile_rows, id_rows) > lists.renderer.capabilities?.maxTextureSize)
             throw new Error('the clusters or the lists have more rows than a texture of this device');
-        this.#upload(picture, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
-        this.#upload(picture, 'lists', grid.ids, words_per_row, id_rows);
+        this.#upload(lists, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
+        this.#upload(lists, 'lists', grid.ids, words_per_row, id_rows);
     }
 
-    /// Makes a picture's slices again if the camera's planes are others.
-    #slice(picture) {
+    /// Makes the slices again if the view has other depths. Those of an oblique near plane mostly have no end.
+    #slice(lists, far = Infinity) {
         const {nearDepth, farDepth, orthographic} = this.#view.info, {slices: count, firstSlice} = this.#options;
-        const planes = `${nearDepth} ${farDepth} ${orthographic}`;
-        if (planes === picture.planes) return;
-        const last = Math.min(farDepth, Math.max(nearDepth, 0.001) * 1e5);
-        const first = Math.min(firstSlice ?? Math.sqrt(nearDepth * last) / 4, last / 2);
-        const slices = orthographic ? this.#lightbin.linearSlices({count, begin: nearDepth, end: farDepth})
-            : this.#lightbin.exponentialSlices({count, first: Math.max(first, nearDepth), last});
-        picture.slices?.dispose();
-        Object.assign(picture, {slices, planes});
+        const near = Math.max(nearDepth, 0.001), last = Math.max(Math.min(farDepth, far, near * 1e5), near * 2);
+        const first = Math.max(Math.min(firstSlice ?? Math.sqrt(near * last) / 4, last / 2), near);
+        const range = orthographic ? {count, begin: nearDepth, end: farDepth} : {count, first, last};
+        const key = JSON.stringify(range);
+        if (key === lists.range) return;
+        const slices = orthographic ? this.#lightbin.linearSlices(range) : this.#lightbin.exponentialSlices(range);
+        lists.slices?.dispose();
+        Object.assign(lists, {slices, range: key});
         const words = slices.shaderWords();
-        this.#upload(picture, 'slices', words, words.length, 1);
+        this.#upload(lists, 'slices', words, words.length, 1);
     }
 
     /// Uploads now, while `data` is the module's memory, to a texture that is made again if its size has changed. Whole
@@ -295,11 +313,11 @@ export class ClusteredLights {
     #patch(material) {
         if (Array.isArray(material)) return material.forEach(each => this.#patch(each));
         if (!is_lit(material) || material[patched_by] !== undefined) return;
-        const {onBeforeCompile, customProgramCacheKey} = material, uniforms = this.#uniforms, key = this.#key;
+        const {onBeforeCompile, onBeforeRender, customProgramCacheKey} = material, lights = this;
         const text = this.#options.masks ? texts.masks : texts.lists;
         material.onBeforeCompile = function(shader, renderer) {
             onBeforeCompile.call(this, shader, renderer);
-            Object.assign(shader.uniforms, uniforms);
+            Object.assign(shader.uniforms, lights.#uniforms);
             const lit = ShaderChunk.lights_fragment_begin.replace(/#if \([^\n]*NUM_DIR_LIGHTS > 0 \|\|[^\n]*\n/,
                 '#if 1\n')
                 .replace(/#if \( NUM_SUN_LIGHTS > 0 \) && defined|#if \( NUM_DIR_LIGHTS > 0 \) && defined/,
@@ -310,9 +328,13 @@ export class ClusteredLights {
         };
         // three.js calls onBeforeCompile only for keys that the material did not have before.
         material.customProgramCacheKey = function() {
-            return `${key} ${onBeforeCompile} ${customProgramCacheKey.call(this)}`;
+            return `${lights.#key} ${onBeforeCompile} ${customProgramCacheKey.call(this)}`;
         };
-        material[patched_by] = () => Object.assign(material, {onBeforeCompile, customProgramCacheKey});
+        material.onBeforeRender = function(renderer, scene, camera, ...others) {
+            onBeforeRender.call(this, renderer, scene, camera, ...others);
+            lights.#camera = camera;
+        };
+        material[patched_by] = () => Object.assign(material, {onBeforeCompile, onBeforeRender, customProgramCacheKey});
         material.needsUpdate = true;
         this.#materials.add(material);
     }

@@ -285,6 +285,7 @@ template <Options options> void compare_sides() {
             const auto cpp_grid =
                 *expected.bin(cpp_view, cpp_lights, inputs_for<options>({scene.min, scene.max}, cpp_slices));
             compare(cpp_grid, grid);
+            if (first_spot == count / 3) compare_uses(cpp_grid, grid);
             if constexpr (options.slicing == Slicing::clusters) {  // which may be given bounds
                 inputs.bounds = &bounds;
                 works(lightbin_bin(binner.get(), view.get(), &lights, &inputs, &grid));
@@ -292,7 +293,6 @@ template <Options options> void compare_sides() {
                 Binner<options> bounded;
                 compare(*bounded.bin(cpp_view, cpp_lights, {.slices = cpp_slices, .bounds = {scene.min, scene.max}}), grid);
             }
-            if (first_spot == count / 3) compare_uses(cpp_grid, grid);
             if constexpr (!options.depth_test && options.slicing != Slicing::clusters) {
                 MaskBinner cpp_binner;
                 const LightMasks cpp_masks = options.slicing == Slicing::z_bins

@@ -240,15 +240,14 @@ test('it throws nothing out of render(): what has no lists is said once, and aft
         const own = stage.draw();
         stage.cluster();
         for (let i = 0; i < 2; ++i)
-            for (const each of [new THREE.ArrayCamera([camera]), new THREE.PerspectiveCamera(60, 0 / 0, 0.1, 100)])
+            for (const each of [new THREE.ArrayCamera(), new THREE.PerspectiveCamera(60, 0 / 0, 0.1, 100)])
                 renderer.render(scene, each);
         const {update} = stage.clusters;
         stage.own();
         scene.onBeforeRender = update;
         return difference(own, stage.draw());
     });
-    const [several, nan, ...others] = browser.complaints.splice(0);
-    assert.match(several, /ArrayCamera/);
+    const [nan, ...others] = browser.complaints.splice(0);
     assert.match(nan, /NaN/);
     assert.deepEqual(others, []);
     same(result);

@@ -120,6 +120,21 @@ function glass(scale, ...viewport) {
     }};
 }
 
+/// What two eyes see, side by side in a part of the window, as WebXR draws it.
+function eyes(setting = {undo: () => {}}) {
+    const both = new THREE.ArrayCamera([-0.4, 0.6].map((x, i) => {
+        const eye = new THREE.PerspectiveCamera(70 + 10 * i, 1, 0.1, 150);
+        eye.position.set(6 + x, 5 - i, 16);
+        eye.lookAt(2 * i, -2, 0);
+        eye.updateMatrixWorld();
+        eye.viewport = new THREE.Vector4(7 + 95 * i, 5 + 9 * i, 93 - 9 * i, 100);
+        return eye;
+    }));
+    both.position.set(6, 5, 17);
+    both.lookAt(0, -2, 0);
+    return {...setting, draw: () => stage.draw(both)};
+}
+
 /// A ball that another scene's lamp lights, over the picture: with a material of both scenes.
 function another_scene() {
     const within = new THREE.Scene(), lamp = new THREE.PointLight(0xffffff, 20, 9);
@@ -163,8 +178,20 @@ export const settings = {
     'Reflector': () => mirror(Reflector, [16, 8], false, 0, -1, -8),
     'Reflector, orthographic': () => ({
         ...mirror(Reflector, [14, 14], true, 0, -4.7, 0), draw: () => stage.draw(other)}),
+    'Reflector, masks': () => ({...mirror(Reflector, [16, 8], false, 0, -1, -8), options: {masks: true}}),
     'Refractor': () => mirror(Refractor, [12, 8], false, 1, 0, 5),
+    'Refractor, orthographic': () => ({
+        ...mirror(Refractor, [14, 14], true, 0, 2, 0), draw: () => stage.draw(other)}),
     'Water': () => mirror(Water, [14, 14], true, 0, -4.7, 0),
+    'Water, orthographic': () => ({...mirror(Water, [14, 14], true, 0, -4.7, 0), draw: () => stage.draw(other)}),
+    'an orthographic z row of the other sign': () => {
+        const turned = other.clone(), {elements} = turned.projectionMatrix;
+        for (const i of [10, 14]) elements[i] *= -1;
+        return {draw: () => stage.draw(turned), undo: () => {}};
+    },
+    'two eyes': eyes,
+    'two eyes and a mirror': () => eyes(mirror(Reflector, [16, 8], false, 0, -1, -8)),
+    'two eyes and glass, scale 0.5': () => eyes(glass(0.5, 0, 0, 200, 125)),
     'EffectComposer': () => composed(1, 200, 125),
     'EffectComposer, pixel ratio 1.25': () => composed(1.25, 162, 101),
     'EffectComposer, pixel ratio 1.5': () => composed(1.5, 161, 100),
