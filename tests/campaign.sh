@@ -56,6 +56,11 @@ shapes() {
 shapes g++ -O2
 shapes clang++-19 "-O3 -march=native"
 
+# A million views with an oblique near plane.
+# shellcheck disable=SC2086  # several flags
+g++ $common -O2 tests/oracle/depth.cpp $work/doctest_main.o -lgmp -o $work/depth
+run "oblique near planes" env LIGHTBIN_ROUNDS=250 $work/depth "--test-case=oblique*"
+
 {
     echo "# Campaign: the oracle at length"
     echo
@@ -77,6 +82,8 @@ shapes clang++-19 "-O3 -march=native"
     echo "| lights and build | verdicts | not by the light's ball alone | left open | misses |"
     echo "| --- | --- | --- | --- | --- |"
     cat $work/shapes.md
+    echo
+    echo "Oblique near planes: $(sed -n 's/.*MESSAGE: //p' $work/oblique_near_planes.txt)."
 } >$work/campaign.md
 [ -z "$failed" ] || fail "something was found, see$failed"
 echo "$me: nothing found; $work/campaign.md has the tables"

@@ -406,8 +406,8 @@ private:
 
     /// Finds the depths of the clip volume. Along a line of sight, clip z is a multiple of depth plus a constant; the
     /// depth of a plane is monotonic in the multiple (orthographic: the constant), which is linear across the image. So
-    /// the least and the greatest depth are at the image's corners. If the near plane leaves nothing of a corner's line,
-    /// it is nearly parallel to other lines and cuts them at any depth, so that there is no greatest depth.
+    /// the least and the greatest depth are at the image's corners. If the near plane leaves nothing of a corner's
+    /// line, it is nearly parallel to other lines and cuts them at any depth, so that there is no greatest depth.
     void find_range() {
         range_.empty = true;
         bool endless = false;

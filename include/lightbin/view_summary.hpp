@@ -18,7 +18,7 @@ struct ViewSummary {
     bool looks_down_negative_z;  ///< whether the view looks along -z: true for right-handed view spaces
     bool reversed_z;
     bool oblique;             ///< the near plane is oblique: near_depth and far_depth are those of the image's corners
-    /// The near plane (x, y, z, w) in view space, with a normal of length 1: it is drawn where x px + y py + z pz + w >= 0.
+    /// The near plane (x, y, z, w) in view space, normal of length 1: drawn is where x px + y py + z pz + w >= 0.
     double near_plane[4];
     bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
     int width, height, tile_size;  ///< in pixels

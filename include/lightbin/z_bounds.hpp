@@ -29,8 +29,8 @@ enum class DepthFormat : std::uint8_t {
     float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
     unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
     unorm16,  ///< a 16-bit integer n that stands for the depth n / (2^16 - 1)
-    /// A 32-bit float that is no window depth but the view depth itself, such as one converted from a logarithmic depth:
-    /// within 2^-18 of the fragment's. Background is +inf, and NaN may be any depth, -inf to +inf.
+    /// A 32-bit float that is no window depth but the view depth itself, such as one converted from a logarithmic
+    /// depth: within 2^-18 of the fragment's. Background is +inf, and NaN may be any depth, -inf to +inf.
     view_depth,
 };
 
@@ -47,8 +47,9 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// Treats samples at the far end of the depth range (1, or 0 with reversed Z, or +inf if they are view depths) as
-    /// background, where nothing is drawn. Right for buffers that were cleared to that value and drawn with a strict depth comparison, and for
-    /// lights of opaque surfaces alone: transparent ones are seen in front of the background, too.
+    /// background, where nothing is drawn. Right for buffers that were cleared to that value and drawn with a strict
+    /// depth comparison, and for lights of opaque surfaces alone: transparent ones are seen in front of the background,
+    /// too.
     bool skip_background = false;
 };
 

@@ -292,7 +292,7 @@ void examine_shapes(const Camera& camera, Examiner& examiner, const lightbin::Vi
                     ++tally.explained;
                     const bool endless = std::abs(least[i].z) + least[i].w >= FLT_MAX,
                                empty = cell.empty || cell.min > cell.max;
-                    const bool in_box = !options.depth_test || (endless && sliced) ||
+                    const bool in_box = !options.depth_test || (endless && (sliced || cell.min == INFINITY)) ||
                                         ((endless || !empty) && examiner.box_meets(balls[i], block.x0, block.y0, cell));
                     if (!in_rectangle[c % tiles][i] || !in_box ||
                         !examiner.depths_within(balls[i], least_depth, most_depth))

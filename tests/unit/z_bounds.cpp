@@ -1,4 +1,4 @@
-// reduce_depth(): sizes of its buffers, and buffers of view depths. tests/oracle/depth.cpp compares the bounds of window
+// reduce_depth(): sizes of its buffers, and buffers of view depths. tests/oracle/depth.cpp compares bounds of window
 // depths with exact ones.
 #include "scene.hpp"
 

@@ -17,7 +17,8 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, l
         result = first_error(LIGHTBIN_MEMBER(language), LIGHTBIN_MEMBER(prefix), LIGHTBIN_MEMBER(fragment),
                              LIGHTBIN_MEMBER(samples), LIGHTBIN_MEMBER(format), LIGHTBIN_MEMBER(reversed_z),
                              LIGHTBIN_MEMBER(orthographic), LIGHTBIN_MEMBER(oblique), LIGHTBIN_MEMBER(skip_background),
-                             LIGHTBIN_MEMBER(flip_y), LIGHTBIN_MEMBER(viewport_corner), LIGHTBIN_MEMBER(push_constants));
+                             LIGHTBIN_MEMBER(flip_y), LIGHTBIN_MEMBER(viewport_corner),
+                             LIGHTBIN_MEMBER(push_constants));
     if (result.error == LIGHTBIN_OK && given.slots_given != 0)
         first_error(LIGHTBIN_MEMBER(depth), LIGHTBIN_MEMBER(z_bounds), LIGHTBIN_MEMBER(grid));
     return make_shader(shader, result, [&] { return lightbin::reduce_shader(known); });
