@@ -18,7 +18,8 @@ struct ViewSummary {
     bool looks_down_negative_z;  ///< whether the view looks along -z: true for right-handed view spaces
     bool reversed_z;
     bool oblique;             ///< the near plane is oblique: near_depth and far_depth are those of the image's corners
-    /// The near plane (x, y, z, w) in view space, with a normal of length 1. Drawn is where x px + y py + z pz + w >= 0.
+    /// The near plane in view space. A point (px, py, pz) is drawn where x px + y py + z pz + w >= 0, and the length of
+    /// (x, y, z) is 1.
     double near_plane[4];
     bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y; if turned, y or x) grows
     bool turned;                   ///< by 90 or 270 degrees: NDC x is made of view-space y, and NDC y of x

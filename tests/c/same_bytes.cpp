@@ -409,9 +409,9 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
     std::vector<float> depth(640 * 360 * 2), min(tiles), max(tiles), cpp_min(tiles), cpp_max(tiles);
     for (std::size_t i = 0; i < depth.size(); ++i)
         depth[i] = i % 4 == 0 ? 1 : 0.5f + static_cast<float>(i % 997) / 2000;
-    for (int round = 0; round < 6; ++round) {
+    for (int round = 0; round < 8; ++round) {
         const lightbin_depth_buffer buffer = {
-            sizeof buffer, 2, depth.data(), depth.size(), 0, round % 3, round % 2, LIGHTBIN_SCALAR, 0};
+            sizeof buffer, 2, depth.data(), depth.size(), 0, round % 4, round % 2, LIGHTBIN_SCALAR, 0};
         works(lightbin_reduce_depth(view.get(), &buffer, min.data(), max.data(), tiles));
         REQUIRE(reduce_depth(cpp_view,
                              {.depth = depth,
