@@ -73,8 +73,7 @@ public:
     Range met(float nearest, float farthest) const {
         nearest = nearer(nearest);
         farthest = farther(farthest);
-        return {before(buckets_.index_of(nearest), [=](float boundary) { return boundary < nearest; }),
-                before(buckets_.index_of(farthest), [=](float boundary) { return boundary <= farthest; })};
+        return met_from(nearest, farthest, buckets_.index_of(nearest), buckets_.index_of(farthest));
     }
 
     /// Calls found(i, first, last) for each footprint i: its light's view depths meet the slices first..last.
@@ -97,9 +96,9 @@ public:
                     depths.last_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[j]));
                 }
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    const float nearest = depths.nearest[j], farthest = depths.farthest[j];
-                    found(i + j, before(depths.first_bucket[j], [=](float boundary) { return boundary < nearest; }),
-                          before(depths.last_bucket[j], [=](float boundary) { return boundary <= farthest; }));
+                    const Range met = met_from(depths.nearest[j], depths.farthest[j], depths.first_bucket[j],
+                                               depths.last_bucket[j]);
+                    found(i + j, met.first, met.last);
                 }
             }
         }
@@ -111,6 +110,12 @@ private:
     static double widened(float depth, float fraction) {
         const double exact = static_cast<double>(depth);
         return exact + abs_of(exact) * static_cast<double>(fraction);  // a product of two floats is exact in double
+    }
+
+    /// Returns the slices that meet the depths from `nearest` to `farthest`, which lie in the given buckets.
+    Range met_from(float nearest, float farthest, std::size_t first_bucket, std::size_t last_bucket) const {
+        return {before(first_bucket, [=](float boundary) { return boundary < nearest; }),
+                before(last_bucket, [=](float boundary) { return boundary <= farthest; })};
     }
 
     /// Returns for how many slice boundaries is_before(boundary) is true, a comparison with a depth in `bucket`.
