@@ -161,9 +161,9 @@ struct WeighedSlices {
 
 /// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles, and tiles with
 /// z-bins, by lists and by masks; clusters without and with the depth test. The tile sizes are those of advise(). Each
-/// depth sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part between
-/// the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors:
-/// those of Binner::bin(), and fewer depths than samples.size says.
+/// depth sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part
+/// between the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan.
+/// Errors: those of Binner::bin(), and fewer depths than samples.size says.
 ///
 /// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
 /// off. It takes longer than advise(), because clusters of the smallest tiles do.

@@ -18,8 +18,8 @@ template <bool depth_test, Slicing slicing = Slicing::none> struct Inputs {
     /// The depth slices. Temporary Slices are copied; other Slices must live until the Binner's call returns.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
-    /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty. With clusters they
-    /// may be left out; the cells whose slice does not meet their tile's bounds then list no light.
+    /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty. With clusters
+    /// they may be left out; the cells whose slice does not meet their tile's bounds then list no light.
     std::conditional_t<reads_bounds || slicing == Slicing::clusters, ZBounds, detail::NotRead> bounds =
         detail::bounds_left_out<reads_bounds>();
 };
@@ -81,11 +81,10 @@ public:
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test, or with clusters; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell; with
-    /// clusters and Z bounds, in each slice that meets the tile's bounds.
-    /// Errors: more lights than Id can number, or than 2^30; more than 2^32 - 1 cells, pairs of a light and a slice, or
-    /// tiles in all lights' rectangles; a world_space() matrix that is not affine; Z bounds shorter than
-    /// view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell;
+    /// with clusters and Z bounds, in each slice that meets the tile's bounds. Errors: more lights than Id can number,
+    /// or than 2^30; more than 2^32 - 1 cells, pairs of a light and a slice, or tiles in all lights' rectangles; a
+    /// world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = detail::Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {

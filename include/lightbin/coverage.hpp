@@ -21,9 +21,9 @@ struct LightCoverage {
     /// plane and beyond its far plane.
     float nearest, farthest;
     /// The light's size in the image, in pixels: the larger side of the rectangle around the projection of its sphere,
-    /// or of a spot's bounding_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In a
-    /// perspective view it is the size of the part beyond the near plane. It is +inf where no finite bound is known, as
-    /// with an infinite radius.
+    /// or of a spot's bounding_sphere(). It is rounded up, so it exceeds 0, and not cut off at the viewport's edges. In
+    /// a perspective view it is the size of the part beyond the near plane. It is +inf where no finite bound is known,
+    /// as with an infinite radius.
     float pixels;
 };
 

@@ -486,8 +486,8 @@ LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_option
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
 
 /* The inputs of a call beside the lights. Slices are read with CLUSTERS and Z_BINS, bounds with a depth test. What is
- * read must be given, and what is not read must be null. With CLUSTERS bounds may be given or not: the cells whose slice
- * does not meet the Z bounds of their tile then list no light. */
+ * read must be given, and what is not read must be null. With CLUSTERS bounds may be given or not: the cells whose
+ * slice does not meet the Z bounds of their tile then list no light. */
 typedef struct lightbin_inputs {
     uint32_t size;
     uint32_t unused;

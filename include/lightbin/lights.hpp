@@ -89,8 +89,8 @@ template <class Light, class ToLight> struct Lights {
 }  // namespace detail
 
 /// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where
-/// it is, so it must live until the Binner's call returns: a temporary array is refused by a compile error, unless it is
-/// a std::span or another range that only refers to elements (std::ranges::borrowed_range).
+/// it is, so it must live until the Binner's call returns: a temporary array is refused by a compile error, unless it
+/// is a std::span or another range that only refers to elements (std::ranges::borrowed_range).
 ///
 /// lights    a contiguous range of any type
 /// to_light  a callable that makes a Sphere, a Spot or a Box of an element. It is copied, and called as const
@@ -124,8 +124,8 @@ auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& t
 /// lights       as for view_space()
 /// view_matrix  as for the other world_space(), but its translation is not read
 /// eye          the eye in world space. Must be finite
-/// to_light     makes a Placed<Sphere>, Placed<Spot> or Placed<Box> of an element. One that is farther from the eye than
-///              floats reach, 3e38 units, is bad input: see Sphere
+/// to_light     makes a Placed<Sphere>, Placed<Spot> or Placed<Box> of an element. One that is farther from the eye
+///              than floats reach, 3e38 units, is bad input: see Sphere
 template <class Range, class ViewMatrix, class ToLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const WorldPoint& eye, const ToLight& to_light) {
     auto result = view_space(static_cast<Range&&>(lights), detail::FromEye<ToLight>{eye, to_light});

@@ -39,8 +39,8 @@ struct SnippetOptions {
 
     Slicing slicing = Slicing::none;  ///< the same as Options::slicing of the Binner that makes the lists
     /// Reads LightMasks::words(), bound at `lists`, in place of lists: with Slicing::z_bins those that were made with
-    /// slices. Nothing is bound at `tiles` and `bins`, and what is said of lists' formats above is not read. The size of
-    /// a uniform block is uniform_block_bytes.
+    /// slices. Nothing is bound at `tiles` and `bins`, and what is said of lists' formats above is not read. The size
+    /// of a uniform block is uniform_block_bytes.
     bool masks = false;
     /// The number of views whose lists lie one after another in the buffers, 1 to 512. With 2 or more, the functions
     /// that read lists take the number of the pixel's view, counted from 0, as their last parameter.
@@ -187,8 +187,8 @@ inline ViewConstants view_constants(const View& view, float tolerance = 2) {
 /// writes tiles and lists. All views have the same `grid`, `corner` and slices. The list of a view whose number is
 /// options.views or more is empty. `check_view` has one array `image` of constants: each view's ViewConstants in turn.
 ///
-/// With masks the lights come in the order of LightMasks::ids(), which with z_bins is that of depth, and light.id is the
-/// position in the caller's array. Masks are of one view and have no clusters.
+/// With masks the lights come in the order of LightMasks::ids(), which with z_bins is that of depth, and light.id is
+/// the position in the caller's array. Masks are of one view and have no clusters.
 ///
 /// Two checks find mistakes in the set-up, by marking the pixels where something is wrong:
 ///

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compute shaders that make the whole light grid on the GPU, or masks, from lights in a buffer on the GPU: cull_shader()
-// returns the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows their use.
+// Compute shaders that make the whole light grid on the GPU, or masks, from lights in a buffer on the GPU:
+// cull_shader() returns the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows
+// their use.
 #pragma once
 
 #include <lightbin/cull_options.hpp>
@@ -25,9 +26,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// what was needed.
 ///
 /// After cull_mask_passes, the buffer `lists` holds LightMasks::words() without bins, for the shader text with
-/// SnippetOptions::masks. There ids()[i] is i for all lights that there is room for, and lights out of view have no bits.
-/// Columns and rows have the lights of a MaskBinner, and the few more that lists have. The depth test and clusters have
-/// no part in masks.
+/// SnippetOptions::masks. There ids()[i] is i for all lights that there is room for, and lights out of view have no
+/// bits. Columns and rows have the lights of a MaskBinner, and the few more that lists have. The depth test and
+/// clusters have no part in masks.
 inline Result<ShaderText> cull_shader(CullPass pass, const CullOptions& options = {});
 
 /// Returns the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport,

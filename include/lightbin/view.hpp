@@ -90,8 +90,8 @@ public:
     /// projection  maps view space to clip space: a glm::mat4, any projection[column][row] of floats or doubles, or
     ///             another type that matrix.hpp lists. Perspective projections may be symmetric or not, jittered, with
     ///             finite or infinite far plane, standard or reversed Z, look down -z or +z, be flipped in x or y, and
-    ///             turn the image by 90, 180 or 270 degrees. Orthographic ones may be centred or not. The near plane may
-    ///             be oblique, as for mirrors: the View looks along z, whichever way the plane is turned.
+    ///             turn the image by 90, 180 or 270 degrees. Orthographic ones may be centred or not. The near plane
+    ///             may be oblique, as for mirrors: the View looks along z, whichever way the plane is turned.
     /// viewport    0 to max_side pixels a side. An empty viewport has no tiles.
     template <class Matrix>
     static Result<View> from_projection(const Matrix& projection, ImageSize viewport,

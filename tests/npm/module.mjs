@@ -121,7 +121,7 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     same(Float64Array.from(image), 'image point');
     same(Float64Array.from(view.unproject(new Float64Array(image))), 'view point');
     same(Float32Array.from(view.depths(0.25, 0.5)), 'view depths');
-    same(Float32Array.of(view.windowDepth([3, 4, 7])), 'window depth');
+    same(Float32Array.of(view.windowDepth(image)), 'window depth');
     for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
     same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
     same(view.gridConstants(5, 7), 'grid constants');
@@ -632,7 +632,7 @@ test('the package is whole and small', async () => {
     const gzip = name => zlib.gzipSync(fs.readFileSync(path.join(folder, name)), {level: 9}).length;
     for (const name of ['lightbin.wasm', 'lightbin_simd.wasm']) {
         const bytes = gzip('lightbin.js') + gzip(name);
-        assert.ok(bytes <= 60000, `${name} and the JavaScript are ${bytes} bytes, compressed`);
+        assert.ok(bytes <= 62000, `${name} and the JavaScript are ${bytes} bytes, compressed`);
     }
     // In a browser the module comes by fetch().
     const fetched = globalThis.fetch;

@@ -166,6 +166,8 @@ TEST_CASE("matrices that are no projection of the promised kinds are refused by 
     // With the last matrix, all points with a depth of -1 to 1 lie behind the eye.
     all_are(ErrorCode::no_near_plane, {with(3, 2, 0.0f, good), with(2, 2, 5, good)});
     CHECK(refusal(with(3, 2, -1e-39f, good)) == ErrorCode::near_plane_too_close);
+    // Reversed Z without any point between the planes: clip z is w plus a constant, more than w everywhere.
+    CHECK(refusal(with(3, 2, 1, with(2, 2, -1, good))) == ErrorCode::no_near_plane);
     // Oblique near planes through the eye, and such that cut off all of the image; and one that cuts off its middle.
     const glm::mat4 oblique = with(0, 2, 0.5f, good);
     all_are(ErrorCode::no_near_plane, {with(3, 2, 0.0f, oblique), with(2, 2, 5, oblique)});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// LIGHTBIN_ABI_TAG: the name of the library's inline namespace. It has the level of vector instructions that the compiler's
-// flags allow everywhere, so that two translation units of different levels share no function and no type. Of a shared
-// inline function the linker would keep either copy, whose instructions might not exist on the machine. Passing a
-// lightbin type between such units is a linker error. Flags for single extensions, such as -mbmi without -mavx2, don't
-// change the name: with these, all units are to be compiled alike.
+// LIGHTBIN_ABI_TAG: the name of the library's inline namespace. It has the level of vector instructions that the
+// compiler's flags allow everywhere, so that two translation units of different levels share no function and no type.
+// Of a shared inline function the linker would keep either copy, whose instructions might not exist on the machine.
+// Passing a lightbin type between such units is a linker error. Flags for single extensions, such as -mbmi without
+// -mavx2, don't change the name: with these, all units are to be compiled alike.
 //
 // Each other header begins by including this one, itself or by another header. So this header also refuses compilers
 // that are not set to C++20, by including a file that does not exist: that ends every compiler with one error that

@@ -24,9 +24,10 @@
 #define LIGHTBIN_HAS_SIMD128 1
 #endif
 
-// LIGHTBIN_NO_SCALAR, which users may define, leaves the scalar kernels out where the compiler may use vectors of 128 bits
-// in any function, so that the program runs on no machine without them: WebAssembly with -msimd128, 64-bit ARM, x86-64
-// with -march=x86-64-v2 and up. Only the reduction of depth keeps its scalar kernel, for rows of less than four samples.
+// LIGHTBIN_NO_SCALAR, which users may define, leaves the scalar kernels out where the compiler may use vectors of 128
+// bits in any function, so that the program runs on no machine without them: WebAssembly with -msimd128, 64-bit ARM,
+// x86-64 with -march=x86-64-v2 and up. Only the reduction of depth keeps its scalar kernel, for rows of less than four
+// samples.
 #if defined(LIGHTBIN_NO_SCALAR) && defined(LIGHTBIN_HAS_SIMD128) && \
     (!defined(LIGHTBIN_X86) || (defined(__SSSE3__) && defined(__SSE4_1__) && defined(__POPCNT__)))
 #define LIGHTBIN_VECTORS_ONLY 1

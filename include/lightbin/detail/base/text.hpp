@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Text: what Error::message() and to_string(ViewSummary) return in place of a std::string. Including <string> would take the
-// compiler about a fifth of the time that all other headers of the core take.
+// Text: what Error::message() and to_string(ViewSummary) return in place of a std::string. Including <string> would
+// take the compiler about a fifth of the time that all other headers of the core take.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -10,8 +10,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// A text in memory of its own: making it allocates nothing. It converts to std::string and std::string_view, and can be
-/// written to a stream.
+/// A text in memory of its own: making it allocates nothing. It converts to std::string and std::string_view, and can
+/// be written to a stream.
 class Text {
 public:
     const char* c_str() const { return characters_; }  ///< the characters and a 0 after them

@@ -190,8 +190,9 @@ lightbin_result make_handle(Handle** handle, Arguments&&... arguments) {
     return succeeded();
 }
 
-/// Returns the address of C structs as the address of the C++ structs that have the same members, or the reverse. The compiler must not reorder accesses by the two types, which it takes for different objects: the fence,
-/// which makes no instruction, lies between those that precede the call and those that follow it.
+/// Returns the address of C structs as the address of the C++ structs that have the same members, or the reverse. The
+/// compiler must not reorder accesses by the two types, which it takes for different objects: the fence, which makes no
+/// instruction, lies between those that precede the call and those that follow it.
 template <class To, class From> auto* same_layout(From* from) {
     static_assert(sizeof(To) == sizeof(From) && alignof(To) == alignof(From));
     std::atomic_signal_fence(std::memory_order_seq_cst);

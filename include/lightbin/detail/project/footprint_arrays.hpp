@@ -154,7 +154,8 @@ struct BinJob : FootprintSlice {
     const float* bounds[2];  ///< the tiles' depths ZBounds::min and max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()
     ListRange* tiles;        ///< where to write the offset and count of each tile's list, for the whole grid
-    /// With clusters and Z bounds, for each block of 8x8 tiles a bit for each tile that lists lights; null: all list them.
+    /// With clusters and Z bounds, for each block of 8x8 tiles a bit for each tile that lists lights; null: all list
+    /// them.
     const std::uint64_t* drawn = nullptr;
 
     /// Returns the words of the blocks in a row of tiles, or null.

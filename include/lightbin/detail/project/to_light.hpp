@@ -39,8 +39,8 @@ struct AsLight {
 };
 
 /// Adds  origin - eye  to a float coordinate. The result is less than 2^-24 (1 + 2^-20) of itself off the exact sum, as
-/// the difference is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2). It is +inf,
-/// which is bad input, for a NaN, and where the sum is beyond the range of floats.
+/// the difference is kept with its rounding error, `rest` (Knuth, The Art of Computer Programming 2, 4.2.2). It is
+/// +inf, which is bad input, for a NaN, and where the sum is beyond the range of floats.
 inline void move_from_eye(double origin, double eye, float& coordinate) {
     const double difference = origin - eye, moved = difference - origin;
     const double rest = (origin - (difference - moved)) - (eye + moved);

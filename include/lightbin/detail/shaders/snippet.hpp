@@ -226,8 +226,9 @@ struct $own_cursor {
     // `begin` reads nothing for a pixel outside of the grid, and divides by nothing: the constants may be unset, or
     // describe a smaller image or other tiles. The cells of a view, and its bins, lie behind those of the views before.
     //
-    // With masks, the cursor's `at` and `end` count words of the masks, and `masks` is where the masks of the column and
-    // of the row begin: see LightMasks::words(). A bin without lights has the range {1, 0}, of which no bit is left.
+    // With masks, the cursor's `at` and `end` count words of the masks, and `masks` is where the masks of the column
+    // and of the row begin: see LightMasks::words(). A bin without lights has the range {1, 0}, of which no bit is
+    // left.
     //
     // With z-bins the ids of lists are ranks, places of the lights in order of depth. The cursor skips ids below the
     // bin's least rank: in a list of known length by binary search, in one that a sentinel ends by linear search.

@@ -272,8 +272,8 @@ public:
     }
 
     /// Appends text in the part of GLSL that the head of this file describes. `$name[i]` reads element i of the
-    /// ShaderBuffer `name`, whatever kind of resource it is. `@name` stands for a text of set(), and a line that ends in
-    /// `@if a !b` is kept if the condition a holds, and b does not.
+    /// ShaderBuffer `name`, whatever kind of resource it is. `@name` stands for a text of set(), and a line that ends
+    /// in `@if a !b` is kept if the condition a holds, and b does not.
     LIGHTBIN_SMALL void add(std::string_view text) {
         std::string glsl;
         for (std::size_t at = 0, end; at < text.size(); at = end) {
@@ -359,9 +359,9 @@ public:
                         .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares constants. In OpenGL each is a uniform by itself, unless `block` is true. In the other APIs they form one
-    /// block, named after the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push
-    /// constants. If `length` is more than 1, each constant is an array of so many vec4s.
+    /// Declares constants. In OpenGL each is a uniform by itself, unless `block` is true. In the other APIs they form
+    /// one block, named after the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of
+    /// push constants. If `length` is more than 1, each constant is an array of so many vec4s.
     LIGHTBIN_SMALL void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push,
                            std::uint32_t length = 1, bool block = false) {
         const bool loose = !block && !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;

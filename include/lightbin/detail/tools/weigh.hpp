@@ -154,7 +154,8 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
 
-/// Returns lights moved along x by `aside` or, in a perspective view, by `aside` times their z. The result refers to `lights`.
+/// Returns lights moved along x by `aside` or, in a perspective view, by `aside` times their z. The result refers to
+/// `lights`.
 template <class Light, class ToLight>
 auto moved_aside(const Lights<Light, ToLight>& lights, float aside, bool orthographic) {
     return view_space(lights.array, [=, &lights](const Light& light) {

@@ -82,8 +82,8 @@ inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats 
     _mm512_storeu_ps(&spheres[12].x, d);
 }
 
-/// Does what load_listed_spheres() of common.inl does, without a copy of the spheres in memory: to load a vector of what
-/// was just stored in smaller parts, the processor would wait for the stores.
+/// Does what load_listed_spheres() of common.inl does, without a copy of the spheres in memory: to load a vector of
+/// what was just stored in smaller parts, the processor would wait for the stores.
 template <class Index>
 void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
                          Floats& radius) {

@@ -184,7 +184,7 @@ struct Projection {
             if (is_finite(camera.near_depth) && is_finite(camera.far_depth)) return {};
             return ErrorCode::depth_range_not_finite;
         }
-        if (camera.near_depth >= FLT_MIN && camera.near_depth < camera.far_depth) return {};
+        if (camera.near_depth >= FLT_MIN && camera.near_depth < camera.far_depth && is_finite(nearest())) return {};
         const bool too_close = nearest() > 0 && camera.near_depth < FLT_MIN;
         return too_close ? ErrorCode::near_plane_too_close : ErrorCode::no_near_plane;
     }
