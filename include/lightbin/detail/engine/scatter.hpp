@@ -45,14 +45,12 @@ inline std::uint32_t count_rows(const BinJob& job, Scratch& scratch, unsigned be
             continue;
         }
         std::uint32_t count = 0, *const below = steps + pitch;
-        const std::uint64_t* const drawn = job.drawn_row(y);
         for (std::size_t x = 0; x < width; ++x) {
             const std::uint32_t step = steps[x];
             below[x] += step;
             count += step;
-            const std::uint32_t listed = drawn == nullptr || (drawn[x / 8] >> (y % 8 * 8 + x % 8) & 1) != 0 ? count : 0;
-            offset += listed;
-            tiles[x] = {offset, listed};
+            offset += count;
+            tiles[x] = {offset, count};
         }
     }
     return offset;
@@ -87,11 +85,7 @@ LIGHTBIN_NOINLINE void fill_rows(const BinJob& job, Id* list, std::size_t begin,
         for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
             const std::size_t y0 = max_of<std::size_t>(lights.y0[i], begin),
                               y1 = min_of<std::size_t>(lights.y1[i] + 1u, end);
-            for (std::size_t y = y0; job.drawn != nullptr && y < y1; ++y)
-                for (std::size_t x = lights.x0[i]; x <= lights.x1[i]; ++x)
-                    if (ListRange& tile = job.tiles[y * width + x]; tile.count > 0)
-                        list[--tile.offset] = static_cast<Id>(lights.ids[i]);
-            if (job.drawn == nullptr && y0 < y1)
+            if (y0 < y1)
                 prepend_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
                            lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));
         }
@@ -118,19 +112,40 @@ std::uint64_t scatter_one(const BinJob& job, const FootprintRun& run, const BinS
     return offset - share.offset;
 }
 
+/// Removes the lists of the tiles whose bit in job.drawn is not set. Returns the number of entries left.
+template <class Id> std::uint64_t keep_drawn_lists(const BinJob& job, const BinShare<Id>& share) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), blocks = (width + 7) / 8;
+    Id* const list = share.out - share.offset;
+    std::uint32_t offset = share.offset;
+    for (std::size_t y = share.begin; y < share.end; ++y)
+        for (std::size_t x = 0; x < width; ++x) {
+            ListRange& tile = job.tiles[y * width + x];
+            const bool drawn = (job.drawn[y / 8 * blocks + x / 8] >> (y % 8 * 8 + x % 8) & 1) != 0;
+            const ListRange kept = {offset, drawn ? tile.count : 0};
+            std::memmove(list + offset, list + tile.offset, kept.count * sizeof(Id));
+            tile = kept;
+            offset += kept.count;
+        }
+    return offset - share.offset;
+}
+
 /// Bins one thread's share of tile rows: counts each tile's lights, then writes each light's id to its tiles' lists.
 /// Returns the number of list entries, and writes no element past the last entry.
 template <class Id>
 std::uint64_t scatter_lights(const BinJob& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];
-    if (job.runs.size() == 1 && run.end - run.begin <= 1 && job.drawn == nullptr) return scatter_one(job, run, share);
-    std::uint32_t offset = share.offset;
-    for (unsigned begin = share.begin; begin < share.end; begin += rows_counted_at_once)
-        offset = count_rows(job, scratch, begin, min_of(begin + rows_counted_at_once, share.end), offset);
-    const std::uint64_t entries = offset - share.offset;
-    if (entries == 0) return 0;  // also where the rows have no tiles
-    fill_rows(job, share.out - share.offset, share.begin, share.end);
-    return entries;
+    std::uint64_t entries = 0;
+    if (job.runs.size() == 1 && run.end - run.begin <= 1) {
+        entries = scatter_one(job, run, share);
+    } else {
+        std::uint32_t offset = share.offset;
+        for (unsigned begin = share.begin; begin < share.end; begin += rows_counted_at_once)
+            offset = count_rows(job, scratch, begin, min_of(begin + rows_counted_at_once, share.end), offset);
+        entries = offset - share.offset;
+        if (entries == 0) return 0;  // also where the rows have no tiles
+        fill_rows(job, share.out - share.offset, share.begin, share.end);
+    }
+    return job.drawn == nullptr ? entries : keep_drawn_lists(job, share);
 }
 
 }}}  // namespace lightbin::detail

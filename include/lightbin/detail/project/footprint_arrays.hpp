@@ -157,11 +157,6 @@ struct BinJob : FootprintSlice {
     /// With clusters and Z bounds, for each block of 8x8 tiles a bit for each tile that lists lights; null: all list
     /// them.
     const std::uint64_t* drawn = nullptr;
-
-    /// Returns the words of the blocks in a row of tiles, or null.
-    const std::uint64_t* drawn_row(unsigned y) const {
-        return drawn == nullptr ? nullptr : drawn + y / 8 * ((static_cast<std::size_t>(camera->x.tiles) + 7) / 8);
-    }
 };
 
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.
