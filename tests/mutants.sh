@@ -33,7 +33,7 @@ try() {
         sources="-I$place tests/shader/cull_twin.cpp"
         arguments=1000
         ;;
-    views | masks) sources="tests/unit/$proof.cpp $work/doctest_main.o" ;;
+    views | clusters | masks) sources="tests/unit/$proof.cpp $work/doctest_main.o" ;;
     lists) sources="-I. tests/platforms/lists.cpp tests/platforms/garbage.cpp" ;;
     families) sources="tests/oracle/families.cpp -lgmp" arguments=8000 ;;
     *) sources="tests/oracle/$proof.cpp $work/doctest_main.o -lgmp" ;;
