@@ -283,7 +283,8 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
 /// lights with bits in its column and its row, in ascending order.
 template <class Device> bool read_masks(Device& device, const CullCase& scene, const CulledGrid& grid) {
     using namespace lightbin;
-    const SnippetOptions options = {.language = scene.options.language, .masks = true, .prefix = scene.options.prefix};
+    const SnippetOptions options = {
+        .language = scene.options.language, .masks = true, .grid = {5}, .prefix = scene.options.prefix};
     const ShaderText snippet = *shader_snippet(options);
     const auto columns = static_cast<std::size_t>(scene.view.tiles_x()), each = std::size_t{grid.masks[0]};
     Job job;
