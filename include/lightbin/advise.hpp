@@ -69,7 +69,7 @@ inline std::string to_string(const AdvicePlan& plan) {
 struct AdviceVerdict {
     std::string part;     ///< the technique's name, such as "clusters"
     bool keep = false;    ///< whether the judged plan uses the technique that `part` names
-    AdvicePlan other = {};  ///< the cheapest measured plan without the technique if `keep` is true, else with it
+    AdvicePlan other = {};  ///< the cheapest measured plan that lacks the technique if `keep` is true, or else uses it
     std::string instead;  ///< `other` in words; empty if no measured plan differs from the judged one in `part`
     double saved_ns = 0;  ///< the time of a frame with the AdvicePlan `other` minus that with the judged plan
 };

@@ -38,8 +38,8 @@ struct ImageSize {
 /// The parameters of a View that from_projection() cannot read from the matrix.
 struct ViewOptions {
     int tile_size = 32;  ///< side of a square tile in pixels, 1 or more
-    /// In place of tile_size: so many columns and rows of tiles, of equal sides that need not be whole pixels, over the
-    /// viewport's width and height. 1 to View::max_side each, or both 0.
+    /// The numbers of tile columns and rows, to be given in place of tile_size: 1 to View::max_side each, or both 0.
+    /// They divide the viewport's width and height into equal parts, which need not be whole pixels.
     int columns = 0, rows = 0;
     /// In place of all three: as many columns and rows of about square tiles as make at most so many tiles. For at most
     /// 4096 cells in 24 slices it is 4096 / 24. 0: is not read.

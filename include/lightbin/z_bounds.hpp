@@ -112,6 +112,20 @@ inline DepthInterval reduce_oblique_tile(const View& view, const DepthRows& rows
     return depths;
 }
 
+/// Calls visit(x, y, low, high) for the tiles in which something may be drawn: the tile's column and row, and its Z
+/// bounds, infinite where they are not given or NaN. Tiles whose minimum exceeds their maximum are empty.
+template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
+    std::size_t tile = 0;
+    const auto bound = [&](std::span<const float> side, float unbounded) {
+        return side.empty() || is_nan(side[tile]) ? unbounded : side[tile];
+    };
+    for (int y = 0; y < view.tiles_y(); ++y)
+        for (int x = 0; x < view.tiles_x(); ++x, ++tile) {
+            const float low = bound(bounds.min, -infinity), high = bound(bounds.max, infinity);
+            if (!(low > high)) visit(x, y, low, high);
+        }
+}
+
 }  // namespace detail
 
 /// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C side's functions that work on finished grids: copies and encodings.
+// The C functions that read finished grids: they copy a grid's lists, or encode them in smaller formats.
 #pragma once
 
 #include <lightbin/detail/c/binners.hpp>

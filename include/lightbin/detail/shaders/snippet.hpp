@@ -223,8 +223,9 @@ struct $own_cursor {
     uint last;      @if !masks binned
 };
 )");
-    // `begin` reads nothing for a pixel outside of the grid, and divides by nothing: the constants may be unset, or
-    // describe a smaller image or other tiles. The cells of a view, and its bins, lie behind those of the views before.
+    // For a pixel outside of the grid, `begin` reads no buffer and makes no division: the constants may be unset, or
+    // describe a smaller image or other tiles. With several views, the cells of all views are stored one view after
+    // another, and so are their bins.
     //
     // With masks, the cursor's `at` and `end` count words of the masks, and `masks` is where the masks of the column
     // and of the row begin: see LightMasks::words(). A bin without lights has the range {1, 0}, of which no bit is

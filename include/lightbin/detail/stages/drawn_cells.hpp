@@ -12,23 +12,16 @@ class DrawnCells {
 public:
     /// bounds  of the view's tiles; without a bound, tiles are drawn in from the nearest or up to the farthest slice
     void find(const View& view, const SliceTable& slices, const ZBounds& bounds) {
-        const int tiles_x = view.tiles_x(), tiles_y = view.tiles_y(), blocks_x = (tiles_x + 7) / 8;
-        blocks_ = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>((tiles_y + 7) / 8);
+        const int blocks_x = (view.tiles_x() + 7) / 8;
+        blocks_ = static_cast<std::size_t>(blocks_x) * static_cast<std::size_t>((view.tiles_y() + 7) / 8);
         const std::uint64_t size = blocks_ * (slices.boundaries().size() + std::uint64_t{1});
         fill_items(words_.reserve(size), size, 0);
-        std::size_t tile = 0;
-        const auto bound = [&](std::span<const float> side, float none) {
-            return side.empty() || !(side[tile] <= infinity) ? none : side[tile];  // NaN bounds nothing
-        };
-        for (int y = 0; y < tiles_y; ++y)
-            for (int x = 0; x < tiles_x; ++x, ++tile) {
-                const float min = bound(bounds.min, -infinity), max = bound(bounds.max, infinity);
-                if (min > max) continue;
-                const SliceTable::Range met = slices.met(min, max);
-                std::uint64_t* const block = words_.data() + y / 8 * blocks_x + x / 8;
-                for (std::size_t slice = met.first; slice <= met.last; ++slice)
-                    block[slice * blocks_] |= std::uint64_t{1} << (y % 8 * 8 + x % 8);
-            }
+        for_each_drawn(view, bounds, [&](int x, int y, float low, float high) {
+            const SliceTable::Range met = slices.met(low, high);
+            std::uint64_t* const block = words_.data() + y / 8 * blocks_x + x / 8;
+            for (std::size_t slice = met.first; slice <= met.last; ++slice)
+                block[slice * blocks_] |= std::uint64_t{1} << (y % 8 * 8 + x % 8);
+        });
     }
 
     /// For each block of 8x8 tiles a word with a bit for each tile, row by row, that the slice may be drawn in.

@@ -115,22 +115,6 @@ inline ImageSize size_of_grid(const View& view) {
     return {camera_of(view).x.split.side, camera_of(view).y.split.side};
 }
 
-/// Calls visit(x, y, low, high) for the tiles in which something may be drawn: the tile's first pixel and its Z bounds.
-/// Tiles whose minimum exceeds their maximum are empty.
-template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
-    const auto [width, height] = size_of_grid(view);
-    const int size = view.tile_size();
-    std::size_t tile = 0;
-    const auto bound = [&](std::span<const float> side, float unbounded) {
-        return side.empty() || std::isnan(side[tile]) ? unbounded : side[tile];
-    };
-    for (int y = 0; y < height; y += size)
-        for (int x = 0; x < width; x += size, ++tile) {
-            const float low = bound(bounds.min, -infinity), high = bound(bounds.max, infinity);
-            if (!(low > high)) visit(x, y, low, high);
-        }
-}
-
 /// A view with one of the tile sizes that advise() and advise_slices() try, and the Z bounds of its tiles.
 struct WeighedGrid {
     View view;
@@ -143,8 +127,9 @@ struct WeighedGrid {
         : view(*fine.with_tile_size(tile_size)), bounds(of_fine), lowest(view.tile_count(), infinity),
           highest(view.tile_count(), -infinity) {
         if (tile_size == fine.tile_size()) return;
+        const int size = fine.tile_size();
         for_each_drawn(fine, of_fine, [&](int x, int y, float low, float high) {
-            const auto tile = static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
+            const auto tile = static_cast<std::size_t>(y * size / tile_size * view.tiles_x() + x * size / tile_size);
             lowest[tile] = (std::min)(lowest[tile], low);
             highest[tile] = (std::max)(highest[tile], high);
         });
@@ -323,6 +308,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCo
     const Slices one = *Slices::from_boundaries({});  // read by no plan
     return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
         detail::for_each_drawn(view, bounds, [&](int x, int y, float low, float) {
+            x *= size, y *= size;
             visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
         });
     });
