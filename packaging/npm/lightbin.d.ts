@@ -198,6 +198,11 @@ export interface Inputs {
     bounds?: ZBounds;
 }
 
+/** The content of a texture, row by row: whole rows, as most APIs upload. */
+export interface Texels {
+    readonly data: Uint32Array | Uint16Array, width: number, height: number;
+}
+
 /**
  * The lists. The arrays are the module's memory. They hold until the binner's next call, and are read anew from the
  * object after each call to the module, as they are empty when its memory has grown.
@@ -226,11 +231,13 @@ export interface Grid {
      * Order and bins of z-bins are not appended. The arrays hold as the data of encode() do.
      */
     append(...others: Grid[]): {ranges: Uint32Array, ids: Uint32Array | Uint16Array};
-    /** Returns how many lights the longest list has. histogram[0] counts the lists without lights, histogram[k] those
-     * with 2 ** (k - 1) to 2 ** k - 1 lights, up to k = 32. */
-    listLengths(): {longest: number, histogram: number[]};
-    /** Returns in how many lists each light is, by its id, with z-bins, too: an array of the program's own. */
-    countEntries(): Uint32Array;
+    /**
+     * Returns an array as the content of a texture that is `width` texels wide, an integer; 0 counts as 1. A texel has
+     * two numbers of `ranges` or `bins`, and one of the others. The height is that of the rows that `ranges` take, at
+     * least 1; of other arrays it is rounded up to a power of two, so that it seldom changes. What lies behind the
+     * array's own numbers in `data` has no meaning. The data are a copy, which the next call for this name overwrites.
+     */
+    texels(name: 'ranges' | 'ids' | 'order' | 'bins', width: number): Texels;
 }
 
 /**
@@ -250,6 +257,8 @@ export interface Masks {
     readonly ids: Uint32Array;
     /** With z-bins: two numbers for each bin, the first and the last place in `ids` of the lights that meet it. */
     readonly bins: Uint32Array;
+    /** As Grid.texels(). */
+    texels(name: 'words' | 'ids' | 'bins', width: number): Texels;
 }
 
 /** Bins lights into tiles, and keeps the memory that this takes. */

@@ -562,6 +562,7 @@ class Made {
     #core;
     #own;
     #arrays = {};
+    #texels = {};
     constructor(core, struct) {
         this.#core = core;
         this.#own = names[struct].filter(key => !(key in array_of || key.endsWith('Count')));
@@ -579,6 +580,18 @@ class Made {
     [array](key, Type = Uint32Array) {
         const read = this[raw], [count, numbers] = array_of[key];
         return this.#arrays[key] = this.#core.array(Type, read[key], numbers * read[count], this.#arrays[key]);
+    }
+    texels(name, columns) {
+        const from = Object.hasOwn(array_of, name) ? this[name] : refuse(`name: ${shown(name)} is no array`);
+        if (from === undefined) refuse(`name: masks have no ${name}, and lists no words`);
+        const channels = array_of[name][1], width = Math.max(whole(columns, 'width', 'uint32_t'), 1);
+        const rows = Math.max(Math.ceil(from.length / (channels * width)), 1);
+        const height = name === 'ranges' ? rows : 2 ** Math.ceil(Math.log2(rows));
+        let data = this.#texels[name];
+        if (data?.length !== channels * width * height || data.constructor !== from.constructor)
+            data = this.#texels[name] = new from.constructor(channels * width * height);
+        data.set(from);
+        return {data, width, height};
     }
 }
 
@@ -637,20 +650,6 @@ class Lists extends Made {
             offset += ids.length;
         }
         return all;
-    }
-    listLengths() {
-        const {ranges} = this, histogram = new Array(33).fill(0);
-        let longest = 0;
-        for (let i = 1; i < ranges.length; i += 2) {
-            longest = Math.max(longest, ranges[i]);
-            ++histogram[32 - Math.clz32(ranges[i])];
-        }
-        return {longest, histogram};
-    }
-    countEntries() {
-        const {ids, order} = this, entries = new Uint32Array(this[raw].lights);
-        for (const id of ids) ++entries[order.length > 0 ? order[id] : id];
-        return entries;
     }
 }
 

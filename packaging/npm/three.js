@@ -53,13 +53,11 @@ const is_taken = light => (light.isPointLight || light.isSpotLight) && !light.ca
 const is_lit = material => material?.isMeshStandardMaterial || material?.isMeshPhongMaterial
     || material?.isMeshLambertMaterial || material?.isMeshToonMaterial;
 
-// Of the textures, each with its number of channels.
-const word = [RedIntegerFormat, 'R32UI', 1];
+// Of the textures.
+const word = [RedIntegerFormat, 'R32UI'];
 const formats = {
-    slices: word, tiles: [RGIntegerFormat, 'RG32UI', 2], lists: word, masks: word, lights: [RGBAFormat, 'RGBA32F', 4],
+    slices: word, tiles: [RGIntegerFormat, 'RG32UI'], lists: word, masks: word, lights: [RGBAFormat, 'RGBA32F'],
 };
-/// The rows of a texture that has room for so many words. There are few numbers, so that it is seldom made again.
-const rows_of = words => 2 ** Math.ceil(Math.log2(Math.max(words / words_per_row, 1)));
 
 // Of a picture whose only tile lists all lights.
 const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
@@ -254,25 +252,24 @@ export class ClusteredLights {
             spheres: {array, stride, count: points},
             spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
         }, {slices: lists.slices}];
-        if (this.#options.masks) this.#upload_masks(lists, this.masks = this.#binner.masks(...given));
-        else this.#upload_lists(lists, this.grid = this.#binner.bin(...given));
+        if (this.#options.masks) {
+            this.masks = this.#binner.masks(...given);
+            this.#upload(lists, 'masks', this.masks.texels('words', words_per_row));
+        } else {
+            this.#upload_lists(lists, this.grid = this.#binner.bin(...given));
+        }
         lists.grid = this.#view.gridConstants().subarray(0, 4);
-        const floats = lists.floats.array;  // read anew, as the module's memory may have grown
-        this.#upload(lists, 'lights', floats, 4 * lights_per_row, floats.length / (light_floats * lights_per_row));
-    }
-
-    #upload_masks(lists, {words, tilesX, tilesY}) {
-        // The room for 1,024 lights, so that the texture stays the same for all numbers up to that.
-        const room = 1 + 32 * (tilesX + tilesY + 33) + 2 * this.#options.slices;
-        this.#upload(lists, 'masks', words, words_per_row, rows_of(Math.max(words.length, room)));
+        const data = lists.floats.array;  // read anew, as the module's memory may have grown
+        const width = 4 * lights_per_row, height = data.length / (light_floats * lights_per_row);
+        this.#upload(lists, 'lights', {data, width, height});
     }
 
     #upload_lists(lists, grid) {
-        const tile_rows = Math.max(grid.tilesY * grid.slices, 1), id_rows = rows_of(grid.ids.length);
-        if (Math.max(tile_rows, id_rows) > lists.renderer.capabilities?.maxTextureSize)
+        const tiles = grid.texels('ranges', grid.tilesX), ids = grid.texels('ids', words_per_row);
+        if (Math.max(tiles.height, ids.height) > lists.renderer.capabilities?.maxTextureSize)
             throw new Error('the clusters or the lists have more rows than a texture of this device');
-        this.#upload(lists, 'tiles', grid.ranges, Math.max(grid.tilesX, 1), tile_rows);
-        this.#upload(lists, 'lists', grid.ids, words_per_row, id_rows);
+        this.#upload(lists, 'tiles', tiles);
+        this.#upload(lists, 'lists', ids);
     }
 
     /// Makes the slices again if the view has other depths. Those of an oblique near plane mostly have no end.
@@ -286,14 +283,13 @@ export class ClusteredLights {
         const slices = orthographic ? this.#lightbin.linearSlices(range) : this.#lightbin.exponentialSlices(range);
         lists.slices?.dispose();
         Object.assign(lists, {slices, range: key});
-        const words = slices.shaderWords();
-        this.#upload(lists, 'slices', words, words.length, 1);
+        const data = slices.shaderWords();
+        this.#upload(lists, 'slices', {data, width: data.length, height: 1});
     }
 
-    /// Uploads now, while `data` is the module's memory, to a texture that is made again if its size has changed. Whole
-    /// rows are uploaded: what lies behind the ids in the module's memory is never read.
-    #upload({renderer, textures}, name, data, width, height) {
-        const [format, internalFormat, channels] = formats[name];
+    /// Uploads now, as `data` may be the module's memory, to a texture that is made again if its size has changed.
+    #upload({renderer, textures}, name, {data, width, height}) {
+        const [format, internalFormat] = formats[name];
         let texture = textures[name];
         if (texture?.image.width !== width || texture.image.height !== height) {
             texture?.dispose();
@@ -302,9 +298,7 @@ export class ClusteredLights {
             texture.internalFormat = internalFormat;
             texture.minFilter = texture.magFilter = NearestFilter;
         }
-        const {buffer, byteOffset, constructor: Numbers} = data, length = width * height * channels;
-        texture.image.data = byteOffset + 4 * length <= buffer.byteLength ? new Numbers(buffer, byteOffset, length)
-            : Numbers.from({length}, (_, i) => data[i]);
+        texture.image.data = data;
         texture.needsUpdate = true;
         renderer.initTexture(texture);
     }

@@ -101,10 +101,7 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
         same(Uint32Array.of(grid.lights, grid.rejected, grid.culled, grid.slices), what);
         for (const key of ['ranges', 'ids', 'order', 'bins']) same(grid[key], `${what}: ${key}`);
         assert.ok(grid.ids.length > 0 && grid.ids.BYTES_PER_ELEMENT === grid.idBytes);
-        same(grid.countEntries(), `entries, ${what}`);
-        const {longest, histogram} = grid.listLengths(), encoded = grid.encode({encoding: 'sentinel', capacity: 1});
-        same(Uint32Array.of(longest), `longest list, ${what}`);
-        same(BigUint64Array.from(histogram, BigInt), `histogram, ${what}`);
+        const encoded = grid.encode({encoding: 'sentinel', capacity: 1});
         same(encoded.data, `encoded, ${what}`);
         same(Uint32Array.of(encoded.tilesCut, encoded.entriesCut, encoded.capacityNeeded), `cut, ${what}`);
         if (!depthTest && slicing !== 'clusters') {
@@ -476,6 +473,36 @@ test('what a view was given is copied', async () => {
     assert.equal(lightbin.allocations, 0);
 });
 
+test_both('texels are whole rows, whose number seldom changes', lightbin => {
+    const view = lightbin.view(square), binner = lightbin.binner({ids: 'u16', slicing: 'z-bins'});
+    const slices = lightbin.exponentialSlices({count: 24, first: 1, last: 60}), array = random_spheres(500);
+    const checked = (made, name, width, channels, height) => {
+        const from = made[name], texels = made.texels(name, width);
+        assert.deepEqual([texels.width, texels.height], [width, height], name);
+        assert.equal(texels.data.length, channels * width * height);
+        assert.deepEqual(texels.data.subarray(0, from.length), from, name);  // of one type
+        assert.equal(made.texels(name, width).data, texels.data);
+    };
+    for (const count of [500, 300, 0]) {
+        const grid = binner.bin(view, {spheres: {array, count}}, {slices}), {ids, order} = grid;
+        const power = length => 2 ** Math.ceil(Math.log2(Math.max(length / 64, 1)));
+        assert.ok(count === 0 || ids.length > 640);
+        checked(grid, 'ranges', grid.tilesX, 2, grid.tilesY);
+        checked(grid, 'ranges', 3, 2, Math.ceil(grid.tilesX * grid.tilesY / 3));
+        checked(grid, 'ids', 64, 1, power(ids.length));
+        checked(grid, 'order', 64, 1, power(order.length));
+        checked(grid, 'bins', 5, 2, 8);
+        assert.throws(() => grid.texels('words', 64), {code: 'not-a-value', message: /^name: masks have no/});
+        const masks = binner.masks(view, {spheres: {array, count}}, {slices});
+        checked(masks, 'words', 64, 1, power(masks.words.length));
+    }
+    for (const width of [-1, 0.5, NaN, undefined])
+        assert.throws(() => binner.bin(view, {}, {slices}).texels('ids', width), {message: /^width: /});
+    for (const name of ['constructor', 'lights', undefined])
+        assert.throws(() => binner.bin(view, {}, {slices}).texels(name, 4), {message: /^name: /});
+    return [view, binner, slices];
+});
+
 test_both('a viewport without pixels has no lists', lightbin => {
     const view = lightbin.view({...square, width: 0}), binner = lightbin.binner();
     const grid = binner.bin(view, {spheres: {array: random_spheres(9)}});
@@ -661,7 +688,7 @@ test('the program of docs/javascript.md runs', async t => {
     assert.ok(blocks.length >= 4);
     const given = `
         const uploads = [], gl = new Proxy({}, {get: (_, name) => name === name.toUpperCase() ? name
-            : (...given) => { if (name === 'texSubImage2D') uploads.push(given); }});
+            : (...given) => { if (name === 'texImage2D') uploads.push(given); }});
         const camera = {projectionMatrix: {elements: ${JSON.stringify(square.projection)}},
                         matrixWorldInverse: {elements: ${JSON.stringify(identity)}}};
         const tilesTexture = 1, listsTexture = 2, program = 3;`;
@@ -676,5 +703,6 @@ test('the program of docs/javascript.md runs', async t => {
     assert.match(made.text, /usampler2D lightbin_lists/);
     assert.match(made.webgpu.text, /@group\(1\) @binding\(1\)/);
     assert.equal(made.texts.length, 5);
-    assert.equal(made.uploads[0].at(-1), made.grid.ranges);
+    assert.deepEqual(made.uploads.map(given => given.at(-1)),
+                     [made.grid.texels('ranges', made.grid.tilesX).data, made.grid.texels('ids', 2048).data]);
 });

@@ -103,21 +103,7 @@ lightbin_lights lights_of(const double* camera) {
 
 /// What is made of a grid.
 void write_uses(const lightbin_grid& grid) {
-    std::vector<std::uint32_t> entries(grid.lights);
-    for (std::uint64_t i = 0; i < grid.id_count; ++i) {
-        const std::uint32_t id = grid.id_bytes == 2 ? static_cast<const std::uint16_t*>(grid.ids)[i]
-                                                    : static_cast<const std::uint32_t*>(grid.ids)[i];
-        ++entries[grid.order != nullptr ? grid.order[id] : id];
-    }
-    write_block(entries.data(), entries.size() * sizeof entries[0]);
-    std::uint32_t longest = 0;
-    std::uint64_t histogram[33] = {}, bytes = 0;
-    for (std::uint64_t i = 0; i < grid.range_count; ++i) {
-        longest = std::max(longest, grid.ranges[i].count);
-        ++histogram[std::bit_width(grid.ranges[i].count)];
-    }
-    write_numbers({longest});
-    write_block(histogram, sizeof histogram);
+    std::uint64_t bytes = 0;
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U32, 1};  // no element is left as it was
     succeed(lightbin_encoded_bytes(&format, grid.range_count, grid.id_count, &bytes));
     std::vector<char> out(bytes);

@@ -12,10 +12,12 @@ export async function use(gl: WebGL2RenderingContext) {
     const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});
     gl.bufferData(gl.ARRAY_BUFFER, grid.ids, gl.STREAM_DRAW);
     gl.bufferData(gl.ARRAY_BUFFER, binner.masks(view, {spheres}).words, gl.STREAM_DRAW);
-    const [x, y, depth] = view.project([1, 2, 3]), {longest, histogram} = grid.listLengths();
-    gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + histogram[longest]);
-    gl.bufferData(gl.ARRAY_BUFFER, grid.countEntries(), view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);
+    const [x, y, depth] = view.project([1, 2, 3]), {data, width} = grid.texels('ids', 64);
+    gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + width);
+    gl.bufferData(gl.ARRAY_BUFFER, data, view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);
     console.log(await lightbin.viewText(view), view.windowDepth([0, 0, depth]), lightbin.lightWindow(1, 2));
+    // @ts-expect-error
+    grid.texels('words', 64);
     // @ts-expect-error
     grid.append([grid]);
     const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});
