@@ -40,13 +40,14 @@
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
 // Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are
-// chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave the vector kernels out,
-// LIGHTBIN_NO_SCALAR to leave out the scalar ones where every machine has vectors (docs/install.md), and
-// LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the compiler tells of it (docs/limits.md
-// says where it does not), and so is x87 arithmetic, the default of some 32-bit compilers. The caller's rounding mode,
-// traps and flushing of denormal numbers do not change the results. The files of a program may be compiled for
-// different processors: the library's inline namespace is named after the instruction set, so these files share no
-// functions. Its types cannot be passed between such files (a linker error), nor be declared without its headers.
+// chosen at run time, and all give the same bytes; g++ and clang without optimisation compile the scalar ones alone.
+// Define LIGHTBIN_NO_SIMD to leave the vector kernels out, LIGHTBIN_NO_SCALAR to leave out the scalar ones where every
+// machine has vectors (docs/install.md), and LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where
+// the compiler tells of it (docs/limits.md says where it does not), and so is x87 arithmetic, the default of some
+// 32-bit compilers. The caller's rounding mode, traps and flushing of denormal numbers do not change the results. The
+// files of a program may be compiled for different processors: the library's inline namespace is named after the
+// instruction set, so these files share no functions. Its types cannot be passed between such files (a linker error),
+// nor be declared without its headers.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward
 // Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.

@@ -1,6 +1,6 @@
 #!/bin/sh
-# left_out.sh COMPILER: what a Binner's options leave out is not in the program. Unoptimised, every function that
-# anything calls has a symbol, and the sizes tell, too.
+# left_out.sh COMPILER: what a Binner's options leave out is not in the program. Where nothing is inlined, every
+# function that anything calls has a symbol, and the sizes tell, too. A file that is not optimised has no vectors.
 set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -10,8 +10,8 @@ trap 'rm -rf "$work"' EXIT
 compile() {
     "$compiler" -std=c++20 -I "$here/../../include" -c "$here/left_out.cpp" "$@"
 }
-compile -O0 -o "$work/off.o"
-compile -O0 -DALL_OPTIONS -o "$work/on.o"
+compile -O1 -fno-inline -o "$work/off.o"
+compile -O1 -fno-inline -DALL_OPTIONS -o "$work/on.o"
 nm -C "$work/off.o" >"$work/off"
 nm -C "$work/on.o" >"$work/on"
 
@@ -30,7 +30,7 @@ done
 # Kernels of the scalar tier, which LIGHTBIN_NO_SCALAR leaves out where the compiler may use vectors everywhere.
 if [ "$(uname -m)" = x86_64 ]; then
     for define in SIMD SCALAR; do
-        compile -O0 -march=x86-64-v2 -DALL_OPTIONS -DLIGHTBIN_NO_$define -o "$work/no_$define.o"
+        compile -O1 -fno-inline -march=x86-64-v2 -DALL_OPTIONS -DLIGHTBIN_NO_$define -o "$work/no_$define.o"
         nm -C "$work/no_$define.o" >"$work/no_$define"
     done
     for kernel in project_lights bin_blocks find_depth_buckets; do
@@ -40,6 +40,12 @@ if [ "$(uname -m)" = x86_64 ]; then
             exit 1
         fi
     done
+    compile -O0 -o "$work/unoptimised.o"
+    grep -q '::avx2::' "$work/off" || { echo "there are no kernels of AVX2" >&2; exit 1; }
+    if nm -C "$work/unoptimised.o" | grep -E '::(simd128|avx2|avx512)::'; then
+        echo "these kernels of vectors are there without optimisation" >&2
+        exit 1
+    fi
 fi
 
 text() { size "$1" | awk 'NR == 2 { print $1 }'; }

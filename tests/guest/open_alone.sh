@@ -10,6 +10,6 @@ hidden=$(grep -rnE '^namespace [a-z:]*::inline ' lightbin) || true
 files=$(grep -rlE '^#pragma once' lightbin | sort)
 echo "$files" | grep -q '\.inl$'
 echo "$files" | xargs -P 2 -n 1 sh -c '
-    echo "#include <$2>" | "$1" -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I . -x c++ - || { echo "$2 does not open alone"; exit 255; }
+    echo "#include <$2>" | "$1" -std=c++20 -O1 -Wall -Wextra -Werror -fsyntax-only -I . -x c++ - || { echo "$2 does not open alone"; exit 255; }
 ' - "$compiler"
 echo "$(echo "$files" | wc -l) files, each opens alone"

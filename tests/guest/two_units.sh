@@ -24,7 +24,7 @@ unit() {
         exit 1
     fi
 }
-unit plain -O0
+unit plain -O1
 unit tuned -O2 -DNDEBUG -march=haswell -fno-exceptions -fno-rtti
 "$compiler" -std=c++20 -c "$here/two_units.cpp" -o "$work/main.o"
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Differences between compilers and processors, as macros. LIGHTBIN_NO_SIMD, which users may define, leaves only the
 // scalar kernels. So does the memory sanitizer, which would report the unused lanes of vectors as uninitialised.
+//
+// So do g++ and clang without optimisation, where a file that bins compiles in half the time that all kernels take, and
+// few vectors are faster than none (bench/README.md, "Compile time"). Files compiled with and without optimisation may
+// still share types and functions of the library: where the linker keeps the copy of with_tier() that has no kernels for
+// an instruction set, that one takes the scalar kernels.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -13,7 +18,7 @@
 #endif
 #endif
 
-#if defined(LIGHTBIN_NO_SIMD) || defined(LIGHTBIN_MEMORY_SANITIZER)
+#if defined(LIGHTBIN_NO_SIMD) || defined(LIGHTBIN_MEMORY_SANITIZER) || (defined(__GNUC__) && !defined(__OPTIMIZE__))
 #elif defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC))
 #define LIGHTBIN_X86 1
 #define LIGHTBIN_HAS_SIMD128 1

@@ -38,7 +38,7 @@ inline std::uint32_t cull_record_words(const CullOptions& options) {
 
 /// Declares the members of CullConstants, without those that lights in view space don't need, and sets the conditions
 /// and names that the texts of all passes use. In the buffer `scratch`, the words about the light with the number id
-/// begin at word  @totals + id * @record_words.
+/// begin at the word totals + id * record_words, both names of the texts.
 inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& options) {
     const bool clusters = options.slicing == Slicing::clusters;
     writer.set({{"clusters", clusters}, {"depth_test", options.depth_test}, {"world_space", options.world_space},

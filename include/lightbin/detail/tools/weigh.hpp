@@ -308,7 +308,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCo
     const Slices one = *Slices::from_boundaries({});  // read by no plan
     return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
         detail::for_each_drawn(view, bounds, [&](int x, int y, float low, float) {
-            x *= size, y *= size;
+            x *= size;
+            y *= size;
             visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
         });
     });
