@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // Which options and tile size light a scene in the least time? advise() measures them on the scene itself, both the
 // time to build the lists and the time to shade with them. docs/advise.md shows its use.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Binner: makes light grids in one call. It owns the grids and the scratch memory that making them takes.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // What a program that bins Boxes (sphere.hpp) includes: their kernels. And functions that make boxes of decals, probes,
 // rooms, projectors and tubes.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // Budget: limits the lists of a light grid to a number of lights per cell, or of entries per frame. The caller's
 // weights decide which lights stay, and what is left out is counted.
 #pragma once

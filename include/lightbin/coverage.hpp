@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // What each light covers: its tiles, its depths and its size in pixels; and in how many cells it is listed.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // The options of cull_shader(), and what plan_cull() and shader_edges() return: all three are in shader_cull.hpp, which
 // includes this header.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Writes a light grid's lists in another format: narrower ids, or a sentinel at each list's end.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The errors that a running program can meet, one value per cause, and a sentence for each.
 #pragma once
 

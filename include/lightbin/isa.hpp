@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Instruction sets: those that the compiler made kernels for, and the widest that this machine runs.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The output: a light grid (Tiled Shading, Figure 1). It has an offset and a count per tile, and one light index list.
 #pragma once
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/*
+/* Stability: settled, also for programs that are not compiled again; but what begins with lightbin_cull,
+ * lightbin_plan_cull or lightbin_reduce may change.
+ *
  * lightbin for C99, every C++ and whatever language calls C. Header-only: in one file of the program, compiled as
  * C++20,
  *

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 //
 // lightbin: finds the lights that can reach each screen tile. Header-only C++20, standard library only.
 //
@@ -48,6 +49,10 @@
 // files of a program may be compiled for different processors: the library's inline namespace is named after the
 // instruction set, so these files share no functions. Its types cannot be passed between such files (a linker error),
 // nor be declared without its headers.
+//
+// Stability, on the second line of each header in this folder. Settled: later versions compile the source that uses it,
+// and give it the same meaning. May change: a new minor version may rename or remove things; the CHANGELOG then says
+// what to write instead. The folder detail/ is no interface.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward
 // Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Lights as the caller has them: arrays of vec4, Sphere, Spot, Box or the caller's own structs, in view space or world
 // space.
 #pragma once

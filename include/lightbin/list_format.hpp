@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The format of light lists. A shader that reads lists must be made for the format that a Binner or encode() wrote.
 #pragma once
 

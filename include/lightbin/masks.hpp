@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // MaskBinner: masks of the columns and rows of tiles, which say what the lists of all tiles say: for 1,000 lights at
 // 1920x1080 in 17 KB.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The matrix types that callers have, converted to one: a Matrix for column vectors (M v), stored by columns.
 //
 //   type                                      first four numbers    what to pass

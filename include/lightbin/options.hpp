@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The options of a Binner. They are template arguments, so an option that is off leaves no code in the program.
 #pragma once
 

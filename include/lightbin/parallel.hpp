@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Lets a call use the caller's threads. lightbin starts no threads of its own.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Errors that a running program can meet are returned as values with a text; bugs of the program are assertions.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Shader text that reads the lists of a light grid, in GLSL, HLSL and WGSL. docs/shader.md shows its use.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // Compute shaders that make the whole light grid on the GPU, or masks, from lights in a buffer on the GPU:
 // cull_shader() returns the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows
 // their use.

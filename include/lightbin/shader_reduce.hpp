@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // A compute or fragment shader that reduces a depth buffer on the GPU to Z bounds. Its text is a whole shader except
 // for `#version`.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // What shader_snippet(), reduce_shader() and cull_shader() return: shader text in one of eight languages, and the list
 // of resources to bind for it.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Depth slices: intervals of view depth that divide each tile's cell into clusters (Olsson, Billeter, Assarsson,
 // "Clustered Deferred and Forward Shading", HPG 2012) or serve as z-bins.
 #pragma once

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Sphere, Spot and Box, the regions that lights can reach, and the usual falloff of a light to nothing at its range. A
 // program that bins Spots or Boxes includes spot.hpp or box.hpp, too.
 #pragma once

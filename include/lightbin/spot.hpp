@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // What a program that bins Spots (sphere.hpp) includes: their kernels, and spheres around spots, tubes and rectangles.
 #pragma once
 

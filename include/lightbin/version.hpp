@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // The version of the library. CMakeLists.txt reads it from this file.
 #pragma once
 

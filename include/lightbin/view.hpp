@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Stage 1: reads a projection matrix, and fixes the tile grid of a viewport.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: may change.
 // A summary of what a View read from its matrix, to be printed: it shows the usual mistakes with matrices.
 #pragma once
 

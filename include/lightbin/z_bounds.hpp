@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stability: settled.
 // Z bounds: the minimum and maximum view depth of what is drawn in each tile, reduced from a depth buffer.
 #pragma once
 

@@ -6,11 +6,16 @@
 # - folders of detail/ form an order, and a file includes, also by way of others, only files of its own folder and of
 #   folders before it;
 # - no file of the core includes one of a wing, and no wing includes another, but c, which offers all of them to C.
+# - each public header says on its second line whether it is settled or may change.
 set -eu
 cd "$(dirname "$0")/../../include"
 includes=$(grep -rnE '^[[:space:]]*#[[:space:]]*(include|import)' lightbin)
 foreign=$(echo "$includes" | grep -vE '#include <([a-z_]+|([eisx]mm)?intrin\.h|arm_neon\.h|wasm_simd128\.h|lightbin/[a-z_/0-9]+\.(hpp|inl|h)|std(def|int)\.h)>$|"lightbin wants C') || true
 [ -z "$foreign" ] || { echo "$foreign"; exit 1; }
+
+for header in lightbin/*.h*; do
+    sed -n 2p "$header" | grep -qE '^(//|/\*) Stability: (settled|may change)[.,]' || { echo "$header: no stability on line 2"; exit 1; }
+done
 
 # What a file reaches in a core folder is found through all files between, so a public header stands nowhere in the order.
 echo "$includes" | sed -nE 's|^lightbin/([^:]+):.*#include <lightbin/(.*)>$|\1 \2|p' | awk '

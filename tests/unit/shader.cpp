@@ -94,6 +94,56 @@ TEST_CASE("an option that is off leaves no line") {
     CHECK(has(bound, "binding = 9"));
 }
 
+TEST_CASE("the names that docs/shader.md promises are in the text of each language and storage") {
+    std::size_t texts = 0;
+    for (const ShaderLanguage language :
+         {ShaderLanguage::glsl_430, ShaderLanguage::glsl_330, ShaderLanguage::glsl_vulkan, ShaderLanguage::essl_300,
+          ShaderLanguage::essl_310, ShaderLanguage::hlsl_5_0, ShaderLanguage::hlsl_5_1, ShaderLanguage::wgsl})
+        for (const ListStorage storage : {ListStorage::storage_buffer, ListStorage::texel_buffer,
+                                          ListStorage::texture_2d, ListStorage::uniform_block})
+            for (const bool masks : {false, true}) {
+                const auto shader = shader_snippet({.language = language,
+                                                    .storage = storage,
+                                                    .slicing = Slicing::z_bins,
+                                                    .masks = masks,
+                                                    .heat_map = true,
+                                                    .view_check = true,
+                                                    .list_check = true,
+                                                    .window = true,
+                                                    .max_tiles = 9,
+                                                    .max_entries = 9,
+                                                    .max_slices = 9});
+                if (!shader) continue;  // a language has no such storage
+                ++texts;
+                CAPTURE(shader->text);
+                for (const char* function : {"lightbin_begin(", "lightbin_next(", "lightbin_begin_missing(",
+                                             "lightbin_next_missing(", "lightbin_count(", "lightbin_heat(",
+                                             "lightbin_window(", "lightbin_check_view("})
+                    CHECK(has(shader->text, function));
+                const bool has_macros = language != ShaderLanguage::wgsl;
+                CHECK(has(shader->text, "lightbin_for_each_light(cursor, pixel, view_depth)") == has_macros);
+                CHECK(has(shader->text, "lightbin_for_each_missing(cursor, lights, pixel, view_depth)") == has_macros);
+                for (const char* member : {has_macros ? " id;" : " id : u32,", has_macros ? " lacked;" : " lacked : bool,"})
+                    CHECK(has(shader->text, member));
+                // By these names an API without binding numbers finds what is to be bound.
+                std::vector<std::string> names;
+                for (const ShaderBinding& binding : shader->bindings) {
+                    names.push_back(binding.name);
+                    CHECK(has(shader->text, names.back().c_str()));
+                    if (const auto block = names.back().find("_block"); block != std::string::npos)
+                        names.back().resize(block);
+                }
+                std::sort(names.begin(), names.end());
+                std::vector<std::string> promised = {"lightbin_grid", "lightbin_image", "lightbin_slices"};
+                if (masks) promised.push_back("lightbin_masks");
+                else promised.insert(promised.end(), {"lightbin_bins", "lightbin_lists", "lightbin_tiles"});
+                std::sort(promised.begin(), promised.end());
+                names.erase(std::remove(names.begin(), names.end(), "lightbin_depths"), names.end());
+                CHECK(names == promised);
+            }
+    CHECK(texts == 54);
+}
+
 TEST_CASE("a wrong option set is refused with a sentence that names the limit") {
     const std::string block =
         refusal({.storage = ListStorage::uniform_block, .max_tiles = 2049, .max_entries = 1});
