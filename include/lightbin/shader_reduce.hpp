@@ -30,11 +30,11 @@ struct ReduceOptions {
 /// The values of the constants `grid`, `planes`, `corner` and `tilt` of reduce_shader(). A uniform block has this
 /// layout: its first 32 bytes, with viewport_corner 48, with oblique all 64.
 struct ReduceConstants {
-    std::uint32_t tile_size, tiles_x, width, height;  ///< grid, as in GridConstants
-    float far_end, slope, margin, unused;             ///< planes
-    std::int32_t corner_x, corner_y;                  ///< corner
+    std::uint32_t tile_size, tiles_x, width, height;       ///< grid, as in GridConstants
+    float far_end = 0, slope = 0, margin = 0, unused = 0;  ///< planes
+    std::int32_t corner_x = 0, corner_y = 0;               ///< corner
     std::int32_t unused_corner[2] = {};
-    float tilt_x = 0, tilt_y = 0, unused_tilt[2] = {};  ///< tilt
+    float tilt_x = 0, tilt_y = 0, unused_tilt[2] = {};     ///< tilt
 };
 static_assert(sizeof(ReduceConstants) == 64);
 
@@ -42,6 +42,8 @@ static_assert(sizeof(ReduceConstants) == 64);
 /// the viewport's first column and row; only shaders with ReduceOptions::viewport_corner read it.
 inline ReduceConstants reduce_constants(const View& view, int corner_x = 0, int corner_y = 0) {
     const GridConstants grid = grid_constants(view);
+    ReduceConstants constants = {.tile_size = grid.tile_size, .tiles_x = grid.tiles_x, .width = grid.width,
+                                 .height = grid.height, .corner_x = corner_x, .corner_y = corner_y};
     const detail::DepthMap& map = detail::projection_of(view).depth;
     // Let e be the distance of a window depth from the far plane's: 1 - depth, or with reversed Z the depth itself. A
     // perspective view depth is  1 / (far_end + slope e)  with far_end = 1 / far and slope = 1 / near - 1 / far:
@@ -60,17 +62,17 @@ inline ReduceConstants reduce_constants(const View& view, int corner_x = 0, int 
                      half_height = 0.5 * detail::max_of(grid.height, 1u),
                      slope = (map.zero_to_one ? 1 : 2) * w,
                      sum = std::fabs(at_far) + std::fabs(map.tilt_x) + std::fabs(map.tilt_y) + slope;
-        return {.tile_size = grid.tile_size, .tiles_x = grid.tiles_x, .width = grid.width, .height = grid.height,
-                .far_end = part(at_far), .slope = std::fabs(part(slope)),
-                .margin = static_cast<float>(0x1p-20) * std::fabs(part(sum)), .unused = 0,
-                .corner_x = corner_x, .corner_y = corner_y,
-                .tilt_x = part(-map.tilt_x / half_width), .tilt_y = part(-map.tilt_y / half_height)};
+        constants.far_end = part(at_far);
+        constants.slope = std::fabs(part(slope));
+        constants.margin = static_cast<float>(0x1p-20) * std::fabs(part(sum));
+        constants.tilt_x = part(-map.tilt_x / half_width);
+        constants.tilt_y = part(-map.tilt_y / half_height);
+        return constants;
     }
-    const float far_end = static_cast<float>(flat ? to : 1 / to),
-                slope = static_cast<float>(flat ? to - from : 1 / from - 1 / to),
-                margin = static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to)));
-    return {grid.tile_size, grid.tiles_x, grid.width, grid.height, far_end,
-            slope,          margin,       0,          corner_x,    corner_y};
+    constants.far_end = static_cast<float>(flat ? to : 1 / to);
+    constants.slope = static_cast<float>(flat ? to - from : 1 / from - 1 / to);
+    constants.margin = static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to)));
+    return constants;
 }
 
 /// Returns a shader that reduces a depth texture to the minimum and maximum Z bounds of each tile, or an Error that
