@@ -93,3 +93,24 @@ END
 # Each function that the header declares is there.
 grep -o 'LIGHTBIN_API [^;]*lightbin_[a-z0-9_]*(' "$header" | grep -o 'lightbin_[a-z0-9_]*($' | tr -d '(' | LC_ALL=C sort >"$work/declared"
 sed -n 's/^function //p' "$work/abi.txt" | diff "$work/declared" -
+
+# examples/python/lightbin.py reads these values and layouts from the header.
+python3 -B - "$1" "$header" "$here" <<'END'
+import ctypes, re, sys
+library, header, here = sys.argv[1:]
+sys.path.insert(0, here + "/../../examples/python")
+from lightbin import Library
+lib = Library(library, header)
+agreed = 0
+for line in open(here + "/abi.txt"):
+    if found := re.match(r"struct (\w+): (\d+) bytes", line):
+        struct = lib.kinds[found[1]]
+        assert ctypes.sizeof(struct) == int(found[2]), line
+    elif found := re.match(r"  (\d+) (\w+), (\d+) bytes", line):
+        field = getattr(struct, found[2])
+        assert (field.offset, field.size) == (int(found[1]), int(found[3])), line
+    elif found := re.match(r"  LIGHTBIN_(\w+) = (\d+)", line):
+        assert lib.values[found[1]] == int(found[2]), line
+    agreed += found is not None
+assert agreed > 400, agreed
+END
