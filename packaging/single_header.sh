@@ -1,40 +1,57 @@
 #!/bin/sh
-# Writes the whole library as one header: `sh packaging/single_header.sh [FILE]`. FILE, build/single/lightbin.hpp if not
-# named, is seen from the top folder. The same sources give the same bytes.
+# Writes the library as one header: `sh packaging/single_header.sh [FILE [all | core | c]]`. FILE, build/single/lightbin.hpp if
+# not named, is seen from the top folder. `all`, if nothing is said, is the whole library in C++, `core` is lightbin.hpp
+# alone, and `c` is lightbin.h with its implementation. The same sources give the same bytes.
 set -eu
 export LC_ALL=C
 me=packaging/single_header.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 takes "a file" "[^-].*" "$@"
-file=${1:-build/single/lightbin.hpp}
+file=${1:-build/single/lightbin.hpp} what=${2:-all}
 version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
+case $what in
+all)
+    first=lightbin.hpp
+    about='A header of the library that a comment names is in here, too. With LIGHTBIN_CORE_ONLY defined all but lightbin.hpp is
+// left out, which takes less time to compile.'
+    ;;
+core) first=lightbin.hpp about='It has lightbin.hpp alone, with all that it includes.' ;;
+c) first=lightbin.h about='It has lightbin.h, and its implementation in C++20.' ;;
+*) fail "cannot make '$what': it makes all, core or c" ;;
+esac
 mkdir -p "$(dirname "$file")"
 
 {
     cat <<EOF
 // lightbin $version in one file, made of the headers in include/lightbin by packaging/single_header.sh: change those.
-// A header of the library that a comment names is in here, too. With LIGHTBIN_CORE_ONLY defined all but lightbin.hpp is
-// left out, which takes less time to compile.
+// $about
 //
 EOF
     sed 's|^|// |; s| *$||' LICENSE
-    printf '#pragma once\n\n'
-    awk '
+    [ $what = c ] || echo '#pragma once'
+    echo
+    awk -v first="lightbin/$first" -v what=$what '
         function fail(what) {
             print what | "cat >&2"
             exit failed = 1
+        }
+
+        # Whether what was written under one condition is there under the one that holds now, too. A condition is the
+        # numbers of the branches around a line.
+        function is_there(earlier) {
+            return substr(condition, 1, length(earlier)) == earlier
         }
 
         # Each header once. What ends in .inl is meant to be included often, each time under other macros; its comments
         # are kept the first time.
         function write(name, often, line, got, dropped, alone) {
             often = name ~ /\.inl$/
-            if (name in depth_of) {
-                if (!often && depth_of[name] > 0) fail(name " is included first under a condition, and again")
-                if (!often) return
+            if (!often && name in under) {
+                if (!is_there(under[name])) fail(name " is included first under a condition, and again")
+                return
             }
-            if (!often) depth_of[name] = depth  # before it is read: a header of detail/ may include the one that includes it
+            if (!often) under[name] = condition  # before it is read: a header of detail/ may include the one that includes it
             print "// ---- " name
             dropped = 1
             while ((got = (getline line < ("include/" name))) > 0) {
@@ -43,13 +60,19 @@ EOF
                     if (line == "#endif") alone = 0
                     continue
                 }
-                if (line ~ /^ *# *if/) ++depth
-                if (line ~ /^ *# *endif/) --depth
+                if (line ~ /^ *# *(el|endif)/) sub(/[0-9]+ $/, "", condition)
+                if (line ~ /^ *# *(if|el)/) condition = condition (++branches) " "
+                if (name == "lightbin/lightbin.h" && line == "#if defined(LIGHTBIN_IMPLEMENTATION)") {
+                    print "#if defined(__GNUC__) && !defined(__cplusplus)"
+                    print "#pragma GCC system_header  // C would warn of raw strings, even where it skips them"
+                    print "#endif"
+                    line = line " && !defined(LIGHTBIN_IMPLEMENTED)\n#define LIGHTBIN_IMPLEMENTED"
+                }
                 if (line ~ /^#include <lightbin\//) {
                     split(line, part, /[<>]/)
                     write(part[2])
                     dropped = 1
-                } else if (is_known(line) || (often && name in depth_of && line ~ /^ *\/\//)) {
+                } else if (is_known(line) || (often && name in under && line ~ /^ *\/\//)) {
                     dropped = 1
                 } else if (line != "" || !dropped) {
                     print line
@@ -58,19 +81,22 @@ EOF
             }
             close("include/" name)
             if (got < 0) fail("cannot read include/" name)
-            if (!(name in depth_of)) depth_of[name] = depth
+            if (!(name in under)) under[name] = condition
             if (!dropped) print ""
         }
 
         # What the top of the file says, and includes of what was included by then.
         function is_known(line) {
             if (line == "#pragma once" || line == "// SPDX-License-Identifier: MIT") return 1
-            if (depth > 0 || line !~ /^#include /) return 0
-            return known[line]++
+            if (line !~ /^#include </) return 0
+            if (line in known && is_there(known[line])) return 1
+            known[line] = condition
+            return 0
         }
 
         BEGIN {
-            write("lightbin/lightbin.hpp")
+            write(first)
+            if (what != "all") exit failed
             print "#if !defined(LIGHTBIN_CORE_ONLY)\n"
             for (i = 1; i < ARGC; ++i) write(substr(ARGV[i], length("include/") + 1))
             print "#endif"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# single_header.sh COMPILER: the single header is made twice the same, is to the compiler what the headers are that it is
-# made of, and serves a program of two units.
+# single_header.sh COMPILER: each single header is made twice the same, and is to the compiler what the headers are that it
+# is made of. That of all headers serves a program of two units, and that of C is included as C99 and as often as one likes.
 set -eu
 export LC_ALL=C
 compiler=$1
@@ -9,12 +9,16 @@ include=$here/../../include
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-single=$work/single/lightbin/lightbin.hpp
-sh "$here/../../packaging/single_header.sh" "$single"
-sh "$here/../../packaging/single_header.sh" "$work/again.hpp"
-cmp "$single" "$work/again.hpp"
-
-echo '#include <lightbin/lightbin.hpp>' >"$work/single.cpp"
+# make WHAT NAME: lightbin/NAME in the folder WHAT
+make() {
+    sh "$here/../../packaging/single_header.sh" "$work/$1/lightbin/$2" "$1"
+    sh "$here/../../packaging/single_header.sh" "$work/again" "$1"
+    cmp "$work/$1/lightbin/$2" "$work/again"
+    echo "#include <lightbin/$2>" >"$work/$1.cpp"
+}
+make all lightbin.hpp
+make core lightbin.hpp
+make c lightbin.h
 cd "$include"
 {
     printf '#include <lightbin/lightbin.hpp>\n#if !defined(LIGHTBIN_CORE_ONLY)\n'
@@ -22,22 +26,37 @@ cd "$include"
     echo '#endif'
 } >"$work/headers.cpp"
 
-# same FILTER FLAG...: what the preprocessor makes of both, through the filter
+# same WHAT HEADERS FILTER FLAG...: what the preprocessor makes of both, through the filter
 same() {
-    filter=$1
-    shift
-    "$compiler" -std=c++20 -E "$@" -I "$work/single" "$work/single.cpp" | $filter >"$work/single.txt"
-    "$compiler" -std=c++20 -E "$@" -I . "$work/headers.cpp" | $filter >"$work/headers.txt"
+    what=$1 headers=$2 filter=$3
+    shift 3
+    "$compiler" -std=c++20 -E "$@" -I "$work/$what" "$work/$what.cpp" | $filter >"$work/single.txt"
+    "$compiler" -std=c++20 -E "$@" -I . "$work/$headers.cpp" | $filter >"$work/headers.txt"
     cmp "$work/single.txt" "$work/headers.txt"
     grep -qi lightbin "$work/single.txt"
 }
 words() { tr -s '[:space:]' '\n'; }
 macros() { grep LIGHTBIN | sort; }
 assertion='-DLIGHTBIN_ASSERT(condition)=check(condition)' # the standard one names file and line
-same words -P "$assertion"
-same words -P "$assertion" -DLIGHTBIN_NO_SIMD
-same words -P "$assertion" -DLIGHTBIN_CORE_ONLY
-same macros -dM
+same all headers words -P "$assertion"
+same all headers words -P "$assertion" -DLIGHTBIN_NO_SIMD
+same all headers words -P "$assertion" -DLIGHTBIN_CORE_ONLY
+same all headers macros -dM
+same core core words -P "$assertion"
+same core core macros -dM
+for left_out in '' _SHADERS _REDUCE_SHADERS _CULL_SHADERS; do
+    same c c words -P "$assertion" -DLIGHTBIN_IMPLEMENTATION "-DLIGHTBIN_NO$left_out"
+done
+same c c words -P
 
-"$compiler" -std=c++20 -I "$work/single" "$here/main.cpp" "$work/single.cpp" -o "$work/program"
+"$compiler" -std=c++20 -I "$work/all" "$here/main.cpp" "$work/all.cpp" -o "$work/program"
 "$work/program"
+
+cat "$work/c.cpp" "$work/c.cpp" >"$work/twice.c"
+${CC:-cc} -std=c99 -pedantic -Wall -Wextra -Werror -fsyntax-only -I "$work/c" "$work/twice.c"
+{
+    cat "$work/c.cpp"
+    echo '#define LIGHTBIN_IMPLEMENTATION'
+    cat "$work/twice.c"
+} >"$work/implementation.cpp"
+"$compiler" -std=c++20 -fsyntax-only -I "$work/c" "$work/implementation.cpp"

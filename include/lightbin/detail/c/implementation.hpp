@@ -18,12 +18,12 @@
 #include <lightbin/detail/c/shapes.hpp>
 #if !defined(LIGHTBIN_NO_SHADERS)
 #include <lightbin/detail/c/shaders.hpp>
-#endif
 #if !defined(LIGHTBIN_NO_REDUCE_SHADERS)
 #include <lightbin/detail/c/reduce_shaders.hpp>
 #endif
 #if !defined(LIGHTBIN_NO_CULL_SHADERS)
 #include <lightbin/detail/c/cull_shaders.hpp>
+#endif
 #endif
 
 extern "C" {
