@@ -1,7 +1,7 @@
 #!/bin/sh
-# Writes the library as one header: `sh packaging/single_header.sh [FILE [all | core | c]]`. FILE, build/single/lightbin.hpp if
-# not named, is seen from the top folder. `all`, if nothing is said, is the whole library in C++, `core` is lightbin.hpp
-# alone, and `c` is lightbin.h with its implementation. The same sources give the same bytes.
+# Writes the library as one header: `sh packaging/single_header.sh [FILE [all | core | c]]`. FILE is seen from the top
+# folder; if it is not named, it is build/single/lightbin.hpp. `all`, the default, is the whole library in C++, `core`
+# is lightbin.hpp alone, and `c` is lightbin.h with its implementation. The same sources give the same bytes.
 set -eu
 export LC_ALL=C
 me=packaging/single_header.sh
@@ -9,11 +9,10 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 takes "a file" "[^-].*" "$@"
 file=${1:-build/single/lightbin.hpp} what=${2:-all}
-version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
 case $what in
 all)
     first=lightbin.hpp
-    about='A header of the library that a comment names is in here, too. With LIGHTBIN_CORE_ONLY defined all but lightbin.hpp is
+    about='A header that a comment names is in here, too. With LIGHTBIN_CORE_ONLY defined all but lightbin.hpp is
 // left out, which takes less time to compile.'
     ;;
 core) first=lightbin.hpp about='It has lightbin.hpp alone, with all that it includes.' ;;
@@ -24,14 +23,14 @@ mkdir -p "$(dirname "$file")"
 
 {
     cat <<EOF
-// lightbin $version in one file, made of the headers in include/lightbin by packaging/single_header.sh: change those.
-// $about
+// lightbin $(library_version) in one file, made of the headers in include/lightbin by packaging/single_header.sh:
+// change those. $about
 //
 EOF
     sed 's|^|// |; s| *$||' LICENSE
-    [ $what = c ] || echo '#pragma once'
+    [ "$what" = c ] || echo '#pragma once'
     echo
-    awk -v first="lightbin/$first" -v what=$what '
+    awk -v first="lightbin/$first" -v what="$what" '
         function fail(what) {
             print what | "cat >&2"
             exit failed = 1
@@ -51,7 +50,7 @@ EOF
                 if (!is_there(under[name])) fail(name " is included first under a condition, and again")
                 return
             }
-            if (!often) under[name] = condition  # before it is read: a header of detail/ may include the one that includes it
+            if (!often) under[name] = condition  # before it is read: a header may include the one that includes it
             print "// ---- " name
             dropped = 1
             while ((got = (getline line < ("include/" name))) > 0) {
@@ -62,7 +61,7 @@ EOF
                 }
                 if (line ~ /^ *# *(el|endif)/) sub(/[0-9]+ $/, "", condition)
                 if (line ~ /^ *# *(if|el)/) condition = condition (++branches) " "
-                if (name == "lightbin/lightbin.h" && line == "#if defined(LIGHTBIN_IMPLEMENTATION)") {
+                if (line == "#if defined(LIGHTBIN_IMPLEMENTATION)" && name == "lightbin/lightbin.h") {
                     print "#if defined(__GNUC__) && !defined(__cplusplus)"
                     print "#pragma GCC system_header  // C would warn of raw strings, even where it skips them"
                     print "#endif"

@@ -5,6 +5,11 @@ fail() {
     exit 1
 }
 
+# Prints the version of the library.
+library_version() {
+    sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .
+}
+
 # Prints the comment at the script's head and ends.
 help() {
     sed -n '2,/^set/s/^# \{0,1\}//p' "$me"

@@ -21,8 +21,7 @@ cp $here/lightbin.js "$work"
 minify "$work/lightbin.js" --bundle --outfile="$out/lightbin.js"
 minify $here/three.js $here/playcanvas.js --outdir="$out"
 cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
-version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
-sed "s/@VERSION@/$version/" $here/package.json.in >"$out/package.json"
+sed "s/@VERSION@/$(library_version)/" $here/package.json.in >"$out/package.json"
 
 # module NAME FUNCTIONS FEATURES FLAG...: exports those functions that the package's JavaScript calls whose names have a
 # word of FUNCTIONS, a pattern. FEATURES are flags of wasm-opt. With emscripten's own settings for -Os, no vector

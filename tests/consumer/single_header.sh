@@ -1,6 +1,6 @@
 #!/bin/sh
-# single_header.sh COMPILER: each single header is made twice the same, and is to the compiler what the headers are that it
-# is made of. That of all headers serves a program of two units, and that of C is included as C99 and as often as one likes.
+# single_header.sh COMPILER: each single header is made twice the same, and is to the compiler what the headers are that
+# it is made of. That of all headers serves a program of two units. That of C is included as C99, and more than once.
 set -eu
 export LC_ALL=C
 compiler=$1
