@@ -9,13 +9,14 @@ cd "$(dirname "$0")/.."
 
 takes "" "" "$@"
 
-tools="g++ cmake ninja-build pkgconf python3"
+tools="git g++ cmake ninja-build pkgconf python3 gdb"
 libraries="doctest-dev libglm-dev libeigen3-dev nlohmann-json3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev python3-moderngl xvfb" # somebody else's, and a display that nobody sees, for a window
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 javascript="emscripten node-acorn binaryen esbuild nodejs node-typescript"
+command -v npm >/dev/null || javascript="$javascript npm" # other distributions of node have it in them
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
 install_packages $tools $libraries $oracle $examples $renderers $opengl $javascript $shaders
