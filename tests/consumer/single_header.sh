@@ -30,8 +30,8 @@ cd "$include"
 same() {
     what=$1 headers=$2 filter=$3
     shift 3
-    "$compiler" -std=c++20 -E "$@" -I "$work/$what" "$work/$what.cpp" | $filter >"$work/single.txt"
-    "$compiler" -std=c++20 -E "$@" -I . "$work/$headers.cpp" | $filter >"$work/headers.txt"
+    "$compiler" -std=c++20 -O1 -E "$@" -I "$work/$what" "$work/$what.cpp" | $filter >"$work/single.txt"
+    "$compiler" -std=c++20 -O1 -E "$@" -I . "$work/$headers.cpp" | $filter >"$work/headers.txt"
     cmp "$work/single.txt" "$work/headers.txt"
     grep -qi lightbin "$work/single.txt"
 }
