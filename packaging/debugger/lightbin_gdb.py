@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Shows lightbin's results in gdb, in programs that use libstdc++: `source lightbin/packaging/debugger/lightbin_gdb.py`.
-# `print *grid` has a line for each tile that lists lights, [x, y, slice] = {ids}. Masks are shown as the lists that they
-# say. The cells of a second view follow those of the first, as more slices.
+# `print *grid` has a line for each tile that lists lights, [x, y, slice] = {ids}. Masks are shown as the lists that
+# they say. The cells of a second view follow those of the first, as more slices.
 import struct
 
 import gdb

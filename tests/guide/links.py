@@ -1,4 +1,4 @@
-# python3 links.py: in all pages of the repository, each link to a file of it finds the file, and each #anchor its heading.
+# python3 links.py: in all pages of the repository, each link to a file finds it, and each #anchor its heading.
 import os
 import re
 import sys
