@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the pages of tests/three and tests/playcanvas share: numbers, and how two pictures differ.
+// What the pages of tests/three, tests/playcanvas and tests/babylon share: numbers, and how two pictures differ.
 
 let state = 1;
 

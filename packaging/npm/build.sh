@@ -19,7 +19,7 @@ minify() {
 node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$work/tables.js" "$work/layouts.inl"
 cp $here/lightbin.js "$work"
 minify "$work/lightbin.js" --bundle --outfile="$out/lightbin.js"
-minify $here/three.js $here/playcanvas.js --outdir="$out"
+minify $here/three.js $here/playcanvas.js $here/babylon.js --outdir="$out"
 cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
 sed "s/@VERSION@/$(library_version)/" $here/package.json.in >"$out/package.json"
 
@@ -62,16 +62,21 @@ planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|des
     module shaders "$text|$planned" "" -Oz
 }
 
-# The shader texts of the adapter for three.js, whose options do not change, so that it needs no module for that.
+# The shader texts of the adapters for three.js and Babylon.js, whose options do not change, so that they need no module
+# for that.
 node --input-type=module - "$out" <<'END'
 import fs from 'node:fs';
 import path from 'node:path';
 import {pathToFileURL} from 'node:url';
 const folder = path.resolve(process.argv[2]), {load} = await import(pathToFileURL(`${folder}/node.js`));
-const lightbin = await load(), given = {language: 'essl-300', storage: 'texture-2d'};
-const texts = await Promise.all([{slicing: 'clusters'}, {slicing: 'z-bins', masks: true}].map(async options =>
-    (await lightbin.shader({...given, ...options})).text));
-fs.writeFileSync(`${folder}/three_text.js`, `export const [lists, masks] = ${JSON.stringify(texts)};\n`);
+const lightbin = await load(), masks = {slicing: 'z-bins', masks: true}, language = 'essl-300';
+const write = async (file, names, ...all) => {
+    const texts = await Promise.all(all.map(async options =>
+        (await lightbin.shader({storage: 'texture-2d', ...options})).text));
+    fs.writeFileSync(`${folder}/${file}`, `export const [${names}] = ${JSON.stringify(texts)};\n`);
+};
+await write('three_text.js', 'lists, masks', {language, slicing: 'clusters'}, {language, ...masks});
+await write('babylon_text.js', 'glsl, wgsl', {language, ...masks}, {language: 'wgsl', ...masks});
 END
 
 for name in lightbin lightbin_simd; do
