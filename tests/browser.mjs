@@ -28,13 +28,13 @@ export function complaints_of(page) {
     return complaints;
 }
 
-/// Opens page.html of a folder, a URL, which draws nothing until it is told to, and waits for window[name]. Returns the
+/// Opens a page of a folder, a URL, which draws nothing until it is told to, and waits for window[name]. Returns the
 /// page, its complaints, and close().
-export async function open(folder, name) {
+export async function open(folder, name, file = 'page.html') {
     const server = await serve(0, folder.pathname), browser = await launch(), page = await browser.newPage();
     const complaints = complaints_of(page);
     page.setDefaultTimeout(240000);
-    await page.goto(`${server.url}page.html#still`);
+    await page.goto(`${server.url}${file}#still`);
     await page.waitForFunction(name => window[name] !== undefined, name)
         .catch(() => { throw new Error(complaints.join('\n')); });
     return {page, complaints, close: async () => {

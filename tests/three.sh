@@ -1,8 +1,9 @@
 #!/bin/sh
-# Tests the npm package's adapter for three.js in a browser: `sh tests/three.sh` on Debian 12, as root or with sudo.
+# Tests the npm package's adapters for three.js in a browser: `sh tests/three.sh` on Debian 12, as root or with sudo.
 # Installs what is missing, builds the package, fetches three.js, and runs it in headless Chromium on a software
-# renderer. Takes about two minutes, and some more the first time.
-#   --serve  shows the page with 5,000 moving lights instead, at http://localhost:8000/page.html
+# renderer. Takes about seven minutes, and some more the first time.
+#   --serve  shows pages with 5,000 moving lights instead: http://localhost:8000/page.html for WebGLRenderer,
+#            webgpu_page.html for WebGPURenderer, webgpu_page.html#webgl for that with WebGL 2
 set -eu
 me=tests/three.sh
 cd "$(dirname "$0")/.."
@@ -17,3 +18,4 @@ modules=$PWD/$tests/node_modules
 export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 [ $# -eq 0 ] || exec node tests/server.mjs 8000 tests/three
 run_node_tests tests/three/pictures.mjs $tests/pictures.log
+run_node_tests tests/three/webgpu.mjs $tests/webgpu.log

@@ -430,7 +430,8 @@ export interface Lightbin {
     binner(options?: BinnerOptions): Binner;
     floats(length: number): Floats;
     /** Slices whose depth grows geometrically from `first`, where the first slice ends, to `last`, where the last one
-     * begins. margin, from 0 to 1/2: how far a reader's own formula may miss, as a part of the depth. */
+     * would end; in fact it reaches to the far plane. margin, from 0 to 1/2: how far a reader's own formula may miss, as
+     * a part of the depth. */
     exponentialSlices(options: {count: number, first: number, last: number, margin?: number}): Slices;
     linearSlices(options: {count: number, begin: number, end: number, margin?: number}): Slices;
     slicesFromBoundaries(options: {boundaries: Numbers, margin?: number}): Slices;

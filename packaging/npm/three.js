@@ -4,14 +4,12 @@
 // three.d.ts describes what is exported.
 import {
     DataTexture, FloatType, Layers, NearestFilter, RedIntegerFormat, RGBAFormat, RGIntegerFormat, ShaderChunk,
-    UnsignedIntType, Vector3, Vector4,
+    UnsignedIntType, Vector4,
 } from 'three';
+import {light_floats, lights_per_row, ListMaker} from './three_lights.js';
 import * as texts from './three_text.js';
 
-// A light has 16 floats, four texels of a texture of this width:
-// view-space x, y, z, range for the lists | red, green, blue, decay | direction x, y, z, cone's cosine | penumbra's
-// cosine, three.js' distance (0 without an end), 1 for spots
-const light_floats = 16, lights_per_row = 256, words_per_row = 2048;
+const words_per_row = 2048;
 
 const declarations = `
 uniform highp sampler2D lightbin_lights;
@@ -59,11 +57,8 @@ const formats = {
     slices: word, tiles: [RGIntegerFormat, 'RG32UI'], lists: word, masks: word, lights: [RGBAFormat, 'RGBA32F'],
 };
 
-// Of a picture whose only tile lists all lights.
-const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
-                   clipDepth: 'minus-one-to-one', reversedZ: false};
 const no_pixel = new Uint32Array(4);
-const place = new Vector3(), axis = new Vector3(), viewport = new Vector4();
+const viewport = new Vector4();
 
 /// The part of its target that three.js draws to by a camera. After a mirror's picture, the renderer reports the whole
 /// target, though the viewport is again that of the ArrayCamera's camera. This has none while three.js draws what lies
@@ -72,37 +67,25 @@ const viewport_of = ({renderer, several}, camera) =>
     several && camera?.viewport || renderer.getCurrentViewport(viewport);
 
 export class ClusteredLights {
-    #lightbin;
-    #options;
-    #binner;
-    #view;
+    #maker;
+    #masks;
     #pictures = [];  // what materials read: in a picture, in a picture that is drawn within it, and so on
     #depth = 0;      // how many pictures are being drawn
     #camera;         // that of the object that three.js draws now
     #materials = new Set();
-    #warnings = new Set();
     #key = `lightbin ${++made}`;
     #uniforms = {};
 
-    constructor(lightbin, {masks = false, tileSize = 32, slices = masks ? 128 : 24, firstSlice, depthTest = !masks,
-                           cutoff = 0, ...others} = {}) {
-        for (const key in others)
-            throw new Error(`options: there is no '${key}', but masks, tileSize, slices, firstSlice, depthTest,`
-                + ' cutoff');
-        if (masks && depthTest) throw new Error('options.depthTest: masks have no depth test');
-        if (!(cutoff >= 0 && cutoff < Infinity)) throw new Error(`options.cutoff: ${cutoff} is not 0 or more`);
-        this.#lightbin = lightbin;
-        this.#options = {masks, slices, firstSlice, cutoff};
-        this.#binner = lightbin.binner({slicing: masks ? 'z-bins' : 'clusters', depthTest});
-        this.#view = lightbin.view({...one_pixel, tileSize});
-        lightbin.linearSlices({count: slices, begin: 0, end: 1}).dispose();  // refuses a wrong number
+    constructor(lightbin, options = {}) {
+        this.#maker = new ListMaker(lightbin, options, {});
+        this.#masks = options.masks;
         this.update = this.update.bind(this);
         for (const name of ['grid', 'viewport', ...Object.keys(formats)])
             this.#uniforms[`lightbin_${name}`] = Object.defineProperty({}, 'value', {get: () => this.#read(name)});
     }
 
     update(renderer, scene, camera) {
-        if (this.#binner === undefined) return;  // after dispose()
+        if (this.#maker === undefined) return;  // after dispose()
         const picture = this.#begin(renderer, scene), points = [], spots = [];
         this.#patch(scene.overrideMaterial);
         this.#collect(scene, camera, points, spots);
@@ -110,28 +93,11 @@ export class ClusteredLights {
         picture.several = camera.isArrayCamera && camera.cameras.length > 0;
         picture.cameras = picture.several ? [...camera.cameras] : [camera];
         picture.cameras.forEach((each, i) => {
-            const lists = picture.lists[i] ??= {
-                floats: this.#lightbin.floats(light_floats * lights_per_row), textures: {}};
+            const lists = picture.lists[i] ??= {textures: {}}, {z, w} = viewport_of(picture, each);
             lists.renderer = renderer;
-            this.#write(lists, points, spots, each);
-            this.#make(lists, points.length, spots.length, each, viewport_of(picture, each));
+            this.#maker.make(lists, points, spots, each, Math.trunc(z), Math.trunc(w),
+                made => this.#upload(lists, made));
         });
-    }
-
-    #make(lists, points, spots, {projectionMatrix: {elements}, reversedDepth, far}, {z, w}) {
-        try {
-            this.#bin(lists, points, spots, {
-                projection: elements, width: Math.trunc(z), height: Math.trunc(w),
-                clipDepth: reversedDepth ? 'zero-to-one' : 'minus-one-to-one',
-                // three.js looks down -z, also where an oblique near plane changes the sign of an orthographic z row.
-                reversedZ: elements[10] > 0,
-            }, far);
-        } catch (error) {
-            const {array} = lists.floats, count = points + spots;
-            for (let i = 0; i < count; ++i) array[light_floats * i + 3] = Infinity;
-            this.#bin(lists, count, 0, one_pixel);
-            this.#warn(error);
-        }
     }
 
     dispose() {
@@ -139,9 +105,8 @@ export class ClusteredLights {
         for (const {floats, slices, textures} of this.#pictures.flatMap(({lists}) => lists))
             for (const made of [floats, slices, ...Object.values(textures)]) made?.dispose();
         this.#pictures = [];
-        this.#binner?.dispose();
-        this.#binner = undefined;
-        this.#view.dispose();
+        this.#maker?.dispose();
+        this.#maker = undefined;
         for (const material of this.#materials) {
             material[patched_by]();
             delete material[patched_by];
@@ -182,12 +147,6 @@ export class ClusteredLights {
         return viewport.set(Math.trunc(x), Math.trunc(y), grid[2] / Math.trunc(z), grid[3] / Math.trunc(w));
     }
 
-    #warn({code, message}) {
-        if (this.#warnings.has(code ?? message)) return;
-        this.#warnings.add(code ?? message);
-        console.warn(`lightbin draws with all lights where it can't make lists: ${message}`);
-    }
-
     /// Finds the lights that the camera sees, hides them from three.js, and patches the materials.
     #collect(object, camera, points, spots) {
         if (!object.visible) return;
@@ -210,85 +169,31 @@ export class ClusteredLights {
         layers.test = other => !(this.#depth > 0 && is_taken(light)) && Layers.prototype.test.call(layers, other);
     }
 
-    #write({floats}, points, spots, {matrixWorldInverse}) {
-        const rows = Math.ceil((points.length + spots.length) / lights_per_row);
-        if (rows * lights_per_row * light_floats > floats.length)
-            floats.resize(2 * rows * lights_per_row * light_floats);
-        const {array} = floats;
-        [...points, ...spots].forEach((light, i) => {
-            const at = light_floats * i, {color, intensity, decay} = light, range = this.#range(light);
-            place.setFromMatrixPosition(light.matrixWorld);
-            if (light.isSpotLight) {
-                axis.setFromMatrixPosition(light.target.matrixWorld).sub(place).transformDirection(matrixWorldInverse)
-                    .toArray(array, at + 8);
-                array[at + 11] = Math.cos(light.angle);
-                array[at + 12] = Math.cos(light.angle * (1 - light.penumbra));
-            }
-            place.applyMatrix4(matrixWorldInverse).toArray(array, at);
-            array[at + 3] = range;
-            array[at + 4] = color.r * intensity;
-            array[at + 5] = color.g * intensity;
-            array[at + 6] = color.b * intensity;
-            array[at + 7] = decay;
-            array[at + 13] = range === Infinity ? 0 : range;
-            array[at + 14] = light.isSpotLight ? 1 : 0;
-        });
-    }
-
-    /// Where a light ends. One without an end has fallen to the cutoff there: color * intensity / range ** decay.
-    #range({color: {r, g, b}, intensity, distance, decay}) {
-        const {cutoff} = this.#options;
-        if (distance > 0) return distance;
-        if (cutoff === 0 || !(decay > 0)) return Infinity;
-        return this.#lightbin.lightRange(Math.abs(Math.max(r, g, b) * intensity), cutoff) ** (2 / decay);
-    }
-
-    /// Makes the lists of point lights and of the spots that follow them, and uploads all that materials read.
-    #bin(lists, points, spots, projection, far) {
-        this.#view.update(projection);
-        this.#slice(lists, far);
-        const {array} = lists.floats, stride = light_floats;
-        const given = [this.#view, {
-            spheres: {array, stride, count: points},
-            spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
-        }, {slices: lists.slices}];
-        if (this.#options.masks) {
-            this.masks = this.#binner.masks(...given);
-            this.#upload(lists, 'masks', this.masks.texels('words', words_per_row));
+    #upload(lists, made) {
+        if (this.#masks) {
+            this.masks = made;
+            this.#write(lists, 'masks', made.texels('words', words_per_row));
         } else {
-            this.#upload_lists(lists, this.grid = this.#binner.bin(...given));
+            this.grid = made;
+            const tiles = made.texels('ranges', made.tilesX), ids = made.texels('ids', words_per_row);
+            if (Math.max(tiles.height, ids.height) > lists.renderer.capabilities?.maxTextureSize)
+                throw new Error('the clusters or the lists have more rows than a texture of this device');
+            this.#write(lists, 'tiles', tiles);
+            this.#write(lists, 'lists', ids);
         }
-        lists.grid = this.#view.gridConstants().subarray(0, 4);
-        const data = lists.floats.array;  // read anew, as the module's memory may have grown
-        const width = 4 * lights_per_row, height = data.length / (light_floats * lights_per_row);
-        this.#upload(lists, 'lights', {data, width, height});
-    }
-
-    #upload_lists(lists, grid) {
-        const tiles = grid.texels('ranges', grid.tilesX), ids = grid.texels('ids', words_per_row);
-        if (Math.max(tiles.height, ids.height) > lists.renderer.capabilities?.maxTextureSize)
-            throw new Error('the clusters or the lists have more rows than a texture of this device');
-        this.#upload(lists, 'tiles', tiles);
-        this.#upload(lists, 'lists', ids);
-    }
-
-    /// Makes the slices again if the view has other depths. Those of an oblique near plane mostly have no end.
-    #slice(lists, far = Infinity) {
-        const {nearDepth, farDepth, orthographic} = this.#view.info, {slices: count, firstSlice} = this.#options;
-        const near = Math.max(nearDepth, 0.001), last = Math.max(Math.min(farDepth, far, near * 1e5), near * 2);
-        const first = Math.max(Math.min(firstSlice ?? Math.sqrt(near * last) / 4, last / 2), near);
-        const range = orthographic ? {count, begin: nearDepth, end: farDepth} : {count, first, last};
-        const key = JSON.stringify(range);
-        if (key === lists.range) return;
-        const slices = orthographic ? this.#lightbin.linearSlices(range) : this.#lightbin.exponentialSlices(range);
-        lists.slices?.dispose();
-        Object.assign(lists, {slices, range: key});
-        const data = slices.shaderWords();
-        this.#upload(lists, 'slices', {data, width: data.length, height: 1});
+        if (lists.uploaded !== lists.slices) {
+            const data = lists.slices.shaderWords();
+            this.#write(lists, 'slices', {data, width: data.length, height: 1});
+            lists.uploaded = lists.slices;
+        }
+        lists.grid = this.#maker.gridConstants;
+        const data = lists.floats.array;
+        this.#write(lists, 'lights', {data, width: 4 * lights_per_row,
+                                      height: data.length / (light_floats * lights_per_row)});
     }
 
     /// Uploads now, as `data` may be the module's memory, to a texture that is made again if its size has changed.
-    #upload({renderer, textures}, name, {data, width, height}) {
+    #write({renderer, textures}, name, {data, width, height}) {
         const [format, internalFormat] = formats[name];
         let texture = textures[name];
         if (texture?.image.width !== width || texture.image.height !== height) {
@@ -308,7 +213,7 @@ export class ClusteredLights {
         if (Array.isArray(material)) return material.forEach(each => this.#patch(each));
         if (!is_lit(material) || material[patched_by] !== undefined) return;
         const {onBeforeCompile, onBeforeRender, customProgramCacheKey} = material, lights = this;
-        const text = this.#options.masks ? texts.masks : texts.lists;
+        const text = this.#masks ? texts.masks : texts.lists;
         material.onBeforeCompile = function(shader, renderer) {
             onBeforeCompile.call(this, shader, renderer);
             Object.assign(shader.uniforms, lights.#uniforms);

@@ -299,7 +299,7 @@ test('an option that is misspelt or wrong is named', async () => {
 test('the program of docs/threejs.md', async () => {
     const text = fs.readFileSync(new URL('../../docs/threejs.md', import.meta.url), 'utf8');
     const blocks = [...text.matchAll(/^```js\n(.*?)^```$/gms)].map(([, block]) => block);
-    assert.equal(blocks.length, 1);
+    assert.equal(blocks.length, 2);
     const expected = await page.evaluate(() => {
         stage.own();
         stage.lights(200, 100);
