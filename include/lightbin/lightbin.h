@@ -574,6 +574,21 @@ LIGHTBIN_API lightbin_result lightbin_bin_masks(lightbin_binner* binner, const l
                                                 const lightbin_lights* lights, const lightbin_inputs* inputs,
                                                 lightbin_masks* masks);
 
+/* Writes a frame as text, to be kept in a file when a picture is wrong: the view, the binner's options, the lights and
+ * the lists or masks that were made of them. The text is JSON, which dump.hpp describes, and ends with a 0.
+ *
+ * binner, view, lights, inputs  what lightbin_bin() or lightbin_bin_masks() was given. Lights are read once more
+ * grid, masks                   what it filled in; the other one is null
+ * text                          `capacity` characters; may be null if capacity is 0
+ * size                          becomes the number of characters of the whole text, with the 0; may be null
+ *
+ * Errors: LIGHTBIN_BUFFER_TOO_SMALL, the text does not fit, and only *size is written; those of lightbin_bin() that are
+ * not of the lights' transform or of numbers. */
+LIGHTBIN_API lightbin_result lightbin_dump(const lightbin_binner* binner, const lightbin_view* view,
+                                           const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                           const lightbin_grid* grid, const lightbin_masks* masks, char* text,
+                                           size_t capacity, size_t* size);
+
 /* ---- Finished grids ----
  *
  * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its

@@ -38,6 +38,7 @@
 //   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
 //   shader_reduce.hpp  shader text that does step 2 on the GPU
 //   shader_cull.hpp   shader text that does step 3 on the GPU, of lights there
+//   dump.hpp          a frame as JSON text, for bug reports: its view, options, lights and lists
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
 // Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are

@@ -61,15 +61,21 @@ public:
         // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of
         // e. The factor 1 + 2^-20 covers rounding.
         result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
+        result.margin_ = margin;
         return result;
     }
 
-    Slices(const Slices& other) : Slices(other.table_.boundaries()) { table_.margin = other.table_.margin; }
+    Slices(const Slices& other) : Slices(other.table_.boundaries()) {
+        table_.margin = other.table_.margin;
+        margin_ = other.margin_;
+    }
     Slices& operator=(Slices other) noexcept {
         std::swap(table_, other.table_);
+        std::swap(margin_, other.margin_);
         return *this;
     }
 
+    float margin() const { return margin_; }  ///< what with_margin() was given, or 0
     int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
     /// Returns the count() - 1 boundaries in ascending order, valid as long as the Slices. Slice i ends at boundary i.
@@ -103,6 +109,7 @@ private:
     }
 
     detail::SliceTable table_;
+    float margin_ = 0;
 };
 
 }}  // namespace lightbin

@@ -51,9 +51,9 @@ small='-mllvm -inline-threshold=0 -mllvm -inlinehint-threshold=40'
 small="$small -fno-vectorize -fno-slp-vectorize -fno-unroll-loops"
 vectors='-msimd128 -msign-ext -mnontrapping-fptoint -mbulk-memory'
 vector_features='--enable-simd --enable-sign-ext --enable-nontrapping-float-to-int --enable-bulk-memory'
-text='lightbin_(view_text|shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull)'
-# What view_text() and plan_cull() take.
-planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)'
+text='lightbin_(view_text|shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|plan_cull|dump)'
+# What view_text(), plan_cull() and dump() take.
+planned='view_(create|update|describe|destroy)|binner_(create|destroy)|slices_(from_boundaries|count|destroy)'
 # shellcheck disable=SC2086  # a word a flag
 {
     module lightbin "^(?!.*$text)" "" $small &

@@ -446,6 +446,13 @@ export interface Lightbin {
     /** Returns what was read from a view's matrix as one line of text, with a question for each likely mistake. For
      * development: it loads shaders.wasm. */
     viewText(view: View): Promise<string>;
+    /** Returns a frame as JSON text, to be kept in a file when a picture is wrong: the view, the binner's options, the
+     * lights and the lists. `sh examples/run.sh --replay FILE` in lightbin's repository checks it. All that is given is
+     * copied before the call returns. It loads shaders.wasm.
+     *
+     * made: what bin() or masks() returned, before the binner's next call
+     * view, lights, inputs: what that call was given */
+    dump(made: Grid | Masks, view: View, lights: Lights, inputs?: Inputs): Promise<string>;
     /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
     lightRange(intensity: number, cutoff: number): number;
     /** Returns the factor that fades a light smoothly to nothing at its range, as the shader text's `window` does:

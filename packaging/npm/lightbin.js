@@ -555,7 +555,7 @@ const array_of = {
 };
 const zeros = struct => Object.fromEntries(names[struct].map(key => [key, 0]));
 const nothing = {grid: {...zeros('grid'), idBytes: 4}, masks: zeros('masks')};
-const raw = Symbol('what the module wrote'), array = Symbol('an array of it');
+const raw = Symbol('what the module wrote'), array = Symbol('an array of it'), made_with = Symbol('the options');
 
 /// What a binner's call made, read from the module's memory.
 class Made {
@@ -664,6 +664,7 @@ class Binner extends Held {
         this.#encoded = new Block(core);
         this.#grid = new Lists(core, this.#encoded);
         this.#masks = new Masks(core, 'masks');
+        this.#grid[made_with] = this.#masks[made_with] = kept(options);
         this[address] = core.scope(c => core.create(c.lightbin_binner_create,
             core.place('binnerOptions', options, 'options')));
     }
@@ -733,6 +734,55 @@ function shader_text(core, generator, options) {
         return {text: core.text(c.lightbin_shader_text(shader)), bindings};
     } finally {
         c.lightbin_shader_destroy(shader);
+    }
+}
+
+/// A copy of what a call was given, for one that waits before it reads it. Views and slices are not copied.
+const kept = value => Floats.made(value) ? value.array.slice() : is_array(value) ? value.slice?.() ?? Array.from(value)
+    : Object(value) !== value || value instanceof Held ? value
+    : Object.fromEntries(Object.entries(value).map(([key, of]) => [key, kept(of)]));
+
+/// A copy of what a binner's call made: the struct's name, its members and arrays, and the binner's options.
+function copy_of(made) {
+    const {size, ...members} = made[raw], arrays = {};
+    for (const key in array_of)
+        if (key in members) arrays[key] = (key === 'ids' ? made.ids : made[array](key)).slice();
+    return {struct: made instanceof Masks ? 'masks' : 'grid', options: made[made_with], members, arrays};
+}
+
+/// The text of a frame. All that is given is copied for the call.
+///
+/// lists  what copy_of() returned
+function dump_text(core, {struct, options, members, arrays}, view, lights, inputs) {
+    const block = new Block(core), to = new Block(core);
+    let binner = 0;
+    try {
+        return core.scope(c => {
+            let at = block.reserve(Object.values(arrays).reduce((sum, array) => sum + array.byteLength + 3, 0));
+            for (const [key, array] of Object.entries(arrays)) {
+                new array.constructor(c.memory.buffer, at, array.length).set(array);
+                members[key] = at;
+                at += array.byteLength + 3 & ~3;
+            }
+            binner = core.create(c.lightbin_binner_create, core.place('binnerOptions', options, 'options'));
+            const placed = core.lights(lights), others = core.inputs(inputs);
+            const lists = core.place(struct, members, struct);
+            const given = [binner, view[address], placed, others, ...struct === 'grid' ? [lists, 0] : [0, lists]];
+            const size = c.stackAlloc(4);
+            core.flush();
+            try {
+                core.check(c.lightbin_dump, ...given, 0, 0, size);
+            } catch (error) {
+                if (error.code !== 'buffer-too-small') throw error;
+            }
+            const bytes = core.heap().getUint32(size, true), text = to.reserve(bytes);
+            core.check(c.lightbin_dump, ...given, text, bytes, size);
+            return core.text(text);
+        });
+    } finally {
+        core.c.lightbin_binner_destroy(binner);
+        block.free();
+        to.free();
     }
 }
 
@@ -824,6 +874,24 @@ class Lightbin {
             });
         } finally {
             copy.dispose();
+        }
+    }
+    async dump(made, view, lights, inputs = {}) {
+        if (!(made instanceof Made) || made[raw] === nothing.grid || made[raw] === nothing.masks)
+            refuse('dump: this is no grid and no masks of a binner that has made nothing since');
+        const own = this.#core, {slices, ...others} = only(kept(inputs), ['slices', 'bounds'], 'inputs');
+        const lists = copy_of(made), given = kept(lights), copies = [];
+        const copied = (core, view, slices) => {
+            copies.push(View.copy(core, view));
+            if (slices != null) copies.push(Slices.copy(core, slices, 'inputs.slices'));
+            return copies.slice(slices != null ? -2 : -1);
+        };
+        try {
+            const before = copied(own, view, slices), core = await this.#shader_core();
+            const [in_core, slices_in_core] = copied(core, ...before);
+            return dump_text(core, lists, in_core, given, {...others, slices: slices_in_core});
+        } finally {
+            for (const copy of copies) copy.dispose();
         }
     }
     lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(...reals({intensity, cutoff})); }

@@ -398,7 +398,7 @@ static void test_binners(void) {
     lightbin_slices_destroy(slices);
 }
 
-/* Masks of columns and rows, as far as they are refused. */
+/* Masks of columns and rows, and the text of a frame, as far as they are refused. */
 static void test_masks(void) {
     lightbin_view_options view_given = view_options();
     lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
@@ -409,6 +409,8 @@ static void test_masks(void) {
     lightbin_binner *binner = NULL, *refused = NULL;
     lightbin_view* view = NULL;
     lightbin_slices* slices = NULL;
+    char text[9] = "x";
+    size_t size = 0;
     int test, slicing;
     CLEAR(inputs);
     CLEAR(masks);
@@ -436,6 +438,19 @@ static void test_masks(void) {
             lightbin_binner_destroy(refused);
         }
     CHECK(masks.words == NULL);
+    inputs.slices = NULL;
+    CHECK(lightbin_bin_masks(binner, view, &lights, &inputs, &masks).error == LIGHTBIN_OK);
+    NEEDS(lightbin_dump(NULL, view, &lights, NULL, NULL, &masks, NULL, 0, &size), "binner");
+    NEEDS(lightbin_dump(binner, NULL, &lights, NULL, NULL, &masks, NULL, 0, &size), "view");
+    NEEDS(lightbin_dump(binner, view, NULL, NULL, NULL, &masks, NULL, 0, &size), "lights");
+    NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, NULL, NULL, 0, &size), "grid");
+    NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, NULL, 9, &size), "text");
+    CHECK(size > 300);
+    CHECK(refuses(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, text, sizeof text, NULL),
+                  LIGHTBIN_BUFFER_TOO_SMALL, "text"));
+    CHECK(text[0] == 'x'); /* it is all or nothing */
+    masks.words = NULL;
+    NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, NULL, 0, &size), "masks.words");
     lightbin_binner_destroy(binner);
     lightbin_slices_destroy(slices);
     lightbin_view_destroy(view);

@@ -6,6 +6,7 @@
 
 #include <lightbin/box.hpp>
 #include <lightbin/coverage.hpp>
+#include <lightbin/dump.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
@@ -248,6 +249,19 @@ lightbin_lights lights_of(std::size_t first_spot, std::size_t first_box, bool in
     return lights;
 }
 
+/// Returns the text of a frame, of which a grid or masks are given.
+std::string dumped(const lightbin_binner* binner, const lightbin_view* view, const lightbin_lights& lights,
+                   const lightbin_inputs* inputs, const lightbin_grid* grid, const lightbin_masks* masks) {
+    std::size_t size = 0;
+    CHECK(lightbin_dump(binner, view, &lights, inputs, grid, masks, nullptr, 0, &size).error ==
+          LIGHTBIN_BUFFER_TOO_SMALL);
+    std::string text(size, ' ');
+    works(lightbin_dump(binner, view, &lights, inputs, grid, masks, text.data(), size, &size));
+    CHECK(text.back() == 0);
+    text.pop_back();
+    return text;
+}
+
 /// Bins lights of each kind alone, and together, with one set of options on both sides.
 template <Options options> void compare_sides() {
     using Read = typename Binner<options>::Inputs;
@@ -282,9 +296,11 @@ template <Options options> void compare_sides() {
             auto grid = sized<lightbin_grid>();
             works(lightbin_bin(binner.get(), view.get(), &lights, &inputs, &grid));
             Binner<options> expected;
-            const auto cpp_grid =
-                *expected.bin(cpp_view, cpp_lights, inputs_for<options>({scene.min, scene.max}, cpp_slices));
+            const auto cpp_inputs = inputs_for<options>({scene.min, scene.max}, cpp_slices);
+            const auto cpp_grid = *expected.bin(cpp_view, cpp_lights, cpp_inputs);
             compare(cpp_grid, grid);
+            CHECK(dumped(binner.get(), view.get(), lights, &inputs, &grid, nullptr) ==
+                  dump(expected, cpp_grid, cpp_view, cpp_lights, cpp_inputs));
             if (first_spot == count / 3) compare_uses(cpp_grid, grid);
             if constexpr (options.slicing == Slicing::clusters) {  // which may be given bounds
                 inputs.bounds = &bounds;
@@ -301,6 +317,9 @@ template <Options options> void compare_sides() {
                 auto masks = sized<lightbin_masks>();
                 works(lightbin_bin_masks(binner.get(), view.get(), &lights, &inputs, &masks));
                 compare(cpp_masks, masks);
+                CHECK(dumped(binner.get(), view.get(), lights, &inputs, nullptr, &masks) ==
+                      (options.slicing == Slicing::z_bins ? dump(cpp_masks, cpp_view, cpp_lights, cpp_slices)
+                                                          : dump(cpp_masks, cpp_view, cpp_lights)));
             }
         }
 }
@@ -395,13 +414,16 @@ TEST_CASE("C: with an eye, centres are doubles at any address") {
                            [](const auto& light) { return light; });
     };
     Binner<> expected;
-    const auto cpp_grid = *expected.bin(cpp_view, lightbin::lights(far(spheres), far(spots), far(boxes)));
+    const auto cpp_lights = lightbin::lights(far(spheres), far(spots), far(boxes));
+    const auto cpp_grid = *expected.bin(cpp_view, cpp_lights);
     CHECK(cpp_grid.ids().size() > 1000);
     const auto view = make_view();
     const auto binner = make_binner();
     auto grid = sized<lightbin_grid>();
     works(lightbin_bin(binner.get(), view.get(), &lights, nullptr, &grid));
     compare(cpp_grid, grid);
+    CHECK(dumped(binner.get(), view.get(), lights, nullptr, &grid, nullptr) ==
+          dump(expected, cpp_grid, cpp_view, cpp_lights));
 }
 
 TEST_CASE("C: depth buffers are reduced as in C++") {

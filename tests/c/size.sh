@@ -19,7 +19,7 @@ compile() {
 code_of() {
     size -A "$work/$1.o" | awk '$1 ~ /^\.text/ { sum += $2 } END { print sum }'
 }
-all="SPOTS BOXES U16 DEPTH_TEST CLUSTERS Z_BINS SHADERS REDUCE_SHADERS CULL_SHADERS"
+all="SPOTS BOXES U16 DEPTH_TEST CLUSTERS Z_BINS SHADERS REDUCE_SHADERS CULL_SHADERS DUMP"
 
 if [ "${1-}" = --check ]; then
     compile whole

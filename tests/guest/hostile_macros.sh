@@ -20,6 +20,6 @@ hostile_macros() {
         check checkf verify verifyf ensure require TEXT UPROPERTY UFUNCTION GENERATED_BODY LIKELY UNLIKELY \
         major minor isset howmany roundup bit F
 
-    printf '#include <lightbin/%s.hpp>\n' advise budget encode lightbin shader_cull shader_reduce
+    printf '#include <lightbin/%s.hpp>\n' advise budget dump encode lightbin shader_cull shader_reduce
     echo 'lightbin::Binner<> binner;'
 }

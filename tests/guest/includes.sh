@@ -25,7 +25,8 @@ echo "$includes" | sed -nE 's|^lightbin/([^:]+):.*#include <lightbin/(.*)>$|\1 \
         wing["spot.hpp"] = wing["box.hpp"] = "kinds"
         wing["shader.hpp"] = wing["shader_text.hpp"] = wing["shader_cull.hpp"] = wing["shader_reduce.hpp"] = "shaders"
         wing["cull_options.hpp"] = "shaders"
-        wing["advise.hpp"] = wing["budget.hpp"] = wing["coverage.hpp"] = wing["encode.hpp"] = "tools"
+        wing["advise.hpp"] = wing["budget.hpp"] = wing["coverage.hpp"] = "tools"
+        wing["dump.hpp"] = wing["encode.hpp"] = "tools"
         wing["lightbin.h"] = "c"
         for (file in wing) is_wing[wing[file]] = 1
     }

@@ -4,6 +4,7 @@
 #include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
 #include <lightbin/coverage.hpp>
+#include <lightbin/dump.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/masks.hpp>
@@ -104,6 +105,7 @@ void use_coverage(Hash& hash, const View& view, const auto& lights, const std::v
         hash.add(std::bit_cast<std::uint32_t>(light.pixels));
     MaskBinner masks;
     hash.add(value_of(masks.bin(view, lights)).mask_words());
+    hash.add(dump(value_of(masks.bin(view, lights)), view, lights).size());
     for (const std::uint32_t word : value_of(masks.bin(view, lights, value_of(Slices::linear(5, 0, 50)))).words())
         hash.add(word);
     Budget<std::uint16_t> budget;
@@ -195,6 +197,7 @@ void use_view(Hash& hash, const View& view) {
     const Matrix identity = matrix(numbers, MatrixLayout::row_major);
 
     Binner<> binner;
+    hash.add(dump(binner, value_of(binner.bin(view, spheres)), view, spheres).size());
     use_encodings(hash, value_of(binner.bin(view, spheres)));
     use_shader_data(hash, view, spheres);
     std::vector<float> weights;

@@ -62,6 +62,7 @@ extern const float numbers[16];
 extern const lightbin::Result<lightbin::View> view;
 extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> grid;
 extern lightbin::Binner<> binner;
+extern std::FILE* const file;
 extern const std::vector<glm::vec4> spheres;
 extern const std::vector<Lamp> lamps;
 extern const std::vector<StreetLamp> street_lamps;

@@ -104,10 +104,16 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
         const encoded = grid.encode({encoding: 'sentinel', capacity: 1});
         same(encoded.data, `encoded, ${what}`);
         same(Uint32Array.of(encoded.tilesCut, encoded.entriesCut, encoded.capacityNeeded), `cut, ${what}`);
+        // What changes while the text is made changes nothing.
+        const own = {...lights, spheres: {array: spheres.slice()}}, dumped = lightbin.dump(grid, view, own, inputs);
+        own.spheres.array.fill(0);
+        binner.bin(view, {}, inputs);
+        assert.equal(await dumped, Buffer.from(block()).toString(), what);
         if (!depthTest && slicing !== 'clusters') {
             const masks = binner.masks(view, lights, inputs), {rejected, culled, firstSpot, firstBox, maskWords} = masks;
             same(Uint32Array.of(masks.lights, rejected, culled, firstSpot, firstBox, maskWords), `masks, ${what}`);
             for (const key of ['words', 'ids', 'bins']) same(masks[key], `masks, ${what}: ${key}`);
+            assert.equal(await lightbin.dump(masks, view, lights, inputs), Buffer.from(block()).toString(), what);
         }
         binner.dispose();
         ++grids;
@@ -403,6 +409,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
         await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
         for (const prefix of ['1x', null, 'a\0b', 'a'.repeat(130000)])
             await assert.rejects(lightbin.shader({language: 'wgsl', prefix}), {code: 'not-a-prefix'});
+        await assert.rejects(lightbin.dump({}, view, {}), {code: 'not-a-value', message: /^dump: this is no grid and no masks/});
         assert.throws(() => { foreign.length = 100; }, TypeError);
         for (const [options, message] of [
             [undefined, /^options must be an object of language/],

@@ -120,6 +120,19 @@ void write_masks(const lightbin_masks& masks) {
     write_block(masks.bins, masks.bin_count * sizeof *masks.bins);
 }
 
+/// The text of a frame, of which lists or masks are given.
+void write_dump(const lightbin_binner* binner, const lightbin_view* view, const lightbin_lights& lights,
+                const lightbin_inputs& inputs, const lightbin_grid* grid, const lightbin_masks* masks) {
+    std::size_t size = 0;
+    const auto dump = [&](char* text) {
+        return lightbin_dump(binner, view, &lights, &inputs, grid, masks, text, size, &size);
+    };
+    if (dump(nullptr).error != LIGHTBIN_BUFFER_TOO_SMALL) std::exit(EXIT_FAILURE);
+    std::vector<char> text(size);
+    succeed(dump(text.data()));
+    write_block(text.data(), size - 1);
+}
+
 }  // namespace
 
 int main(int count, char** names) {
@@ -173,10 +186,12 @@ int main(int count, char** names) {
         write_block(grid.order, grid.order_count * sizeof *grid.order);
         write_block(grid.bins, grid.bin_count * sizeof *grid.bins);
         write_uses(grid);
+        write_dump(binner, view, lights, inputs, &grid, nullptr);
         if (options.depth_test == 0 && options.slicing != LIGHTBIN_CLUSTERS) {
             auto masks = sized<lightbin_masks>();
             succeed(lightbin_bin_masks(binner, view, &lights, &inputs, &masks));
             write_masks(masks);
+            write_dump(binner, view, lights, inputs, nullptr, &masks);
         }
         lightbin_binner_destroy(binner);
     }

@@ -16,6 +16,9 @@
 
 #include <lightbin/detail/c/grids.hpp>
 #include <lightbin/detail/c/shapes.hpp>
+#if !defined(LIGHTBIN_NO_DUMP)
+#include <lightbin/detail/c/dumps.hpp>
+#endif
 #if !defined(LIGHTBIN_NO_SHADERS)
 #include <lightbin/detail/c/shaders.hpp>
 #if !defined(LIGHTBIN_NO_REDUCE_SHADERS)
