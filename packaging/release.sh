@@ -84,7 +84,7 @@ header() {
 c_program() {
     printf '#define LIGHTBIN_IMPLEMENTATION\n#include <lightbin/lightbin.h>\n' >code.cpp
     gcc -std=c99 -pedantic -Wall -Wextra -Werror -I . -c "$sources/tests/c/contract.c" &&
-        g++ -std=c++20 -O1 code.cpp contract.o "$@"
+        g++ -std=c++20 code.cpp contract.o "$@"
 }
 npm_project() {
     mkdir npm && cp "$sources/tests/consumer/main.mjs" npm &&
@@ -100,8 +100,8 @@ cp "$sources/tests/consumer/main.cpp" fetched
     sed -n '/^```cmake$/,/^```$/p' NOTES.md | sed "/^\`/d; s|$url/|file://$place/|"
 } >fetched/CMakeLists.txt
 try "$archive by the lines for CMake in NOTES.md" cmake_project fetched yours
-try "lightbin.hpp" header lightbin.hpp lightbin.hpp g++ -std=c++20 -O1 fetched/main.cpp
-try "lightbin_core.hpp" header lightbin_core.hpp lightbin.hpp g++ -std=c++20 -O1 fetched/main.cpp
+try "lightbin.hpp" header lightbin.hpp lightbin.hpp g++ -std=c++20 fetched/main.cpp
+try "lightbin_core.hpp" header lightbin_core.hpp lightbin.hpp g++ -std=c++20 fetched/main.cpp
 try "lightbin.h" header lightbin.h lightbin.h c_program
 try "$npm_package" npm_project
 
