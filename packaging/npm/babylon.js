@@ -16,6 +16,7 @@ import '@babylonjs/core/ShadersWGSL/ShadersInclude/clusteredLightingFunctions.js
 import '@babylonjs/core/ShadersWGSL/ShadersInclude/lightUboDeclaration.js';
 import '@babylonjs/core/ShadersWGSL/ShadersInclude/pbrClusteredLightingFunctions.js';
 import * as texts from './babylon_text.js';
+import {update_slices} from './view_slices.js';
 
 // A light has 20 floats, Babylon's own: position, exponent | diffuse, range | specular, radius | direction, cosine |
 // range, 1 / range ** 2, scale and offset of the cone's angle.
@@ -199,7 +200,10 @@ export class ClusteredLights extends ClusteredLightContainer {
 
     #mask(pass, view, lights) {
         this.#view.update(view);
-        this.#slice(pass);
+        if (update_slices(this.#lightbin, pass, this.#view, {count: 128, least: 1e-30})) {
+            const data = pass.slices.shaderWords();
+            this.#upload(pass, 'slices', {data, width: data.length, height: 1});
+        }
         this.masks = this.#binner.masks(this.#view, lights, {slices: pass.slices});
     }
 
@@ -232,21 +236,6 @@ export class ClusteredLights extends ClusteredLightContainer {
             array[at + 18] = _lightAngleScale;
             array[at + 19] = _lightAngleOffset;
         });
-    }
-
-    /// Makes the slices again if the view has other depths.
-    #slice(pass) {
-        const {nearDepth, farDepth, orthographic} = this.#view.info, count = 128;
-        const near = Math.max(nearDepth, 1e-30), last = Math.max(Math.min(farDepth, near * 1e5), near * 2);
-        const first = Math.max(Math.min(Math.sqrt(near * last) / 4, last / 2), near);
-        const range = orthographic ? {count, begin: nearDepth, end: farDepth} : {count, first, last};
-        const key = JSON.stringify(range);
-        if (key === pass.range) return;
-        const slices = orthographic ? this.#lightbin.linearSlices(range) : this.#lightbin.exponentialSlices(range);
-        pass.slices?.dispose();
-        Object.assign(pass, {slices, range: key});
-        const data = slices.shaderWords();
-        this.#upload(pass, 'slices', {data, width: data.length, height: 1});
     }
 
     /// Uploads to a texture that is made again if its size has changed.

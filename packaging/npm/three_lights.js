@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the adapters for three.js' two renderers share: they make the lists of a scene's lights in a camera's picture.
 import {Vector3, WebGPUCoordinateSystem} from 'three';
+import {update_slices} from './view_slices.js';
 
 // A light has 16 floats, four texels of a texture:
 // view-space x, y, z, range for the lists | red, green, blue, decay | direction x, y, z, cone's cosine | penumbra's
@@ -116,27 +117,13 @@ export class ListMaker {
 
     #bin(lists, points, spots, projection, far) {
         this.#view.update(projection);
-        this.#slice(lists, far);
+        const {slices: count, firstSlice} = this.#options;
+        update_slices(this.#lightbin, lists, this.#view, {count, least: 0.001, far, firstSlice, margin: this.#margin});
         const {array} = lists.floats, stride = light_floats;
         const given = [this.#view, {
             spheres: {array, stride, count: points},
             spots: {array: array.subarray(stride * points), stride, count: spots, axis: 8, cosine: 11},
         }, {slices: lists.slices}];
         return this.#options.masks ? this.#binner.masks(...given) : this.#binner.bin(...given);
-    }
-
-    /// Makes the slices again if the view has other depths. Those of an oblique near plane mostly have no end.
-    #slice(lists, far = Infinity) {
-        const {nearDepth, farDepth, orthographic} = this.#view.info, {slices: count, firstSlice} = this.#options;
-        const near = Math.max(nearDepth, 0.001), last = Math.max(Math.min(farDepth, far, near * 1e5), near * 2);
-        const first = Math.max(Math.min(firstSlice ?? Math.sqrt(near * last) / 4, last / 2), near);
-        // A margin is a part of the depth, so none at 0, where there may be a boundary of several slices.
-        const margin = this.#margin, linear = margin > 0 && nearDepth < 0 ? 1 : count;
-        const range = orthographic ? {count: linear, begin: nearDepth, end: farDepth, margin}
-            : {count, first, last, margin};
-        if (JSON.stringify(range) === JSON.stringify(lists.range)) return;
-        const slices = orthographic ? this.#lightbin.linearSlices(range) : this.#lightbin.exponentialSlices(range);
-        lists.slices?.dispose();
-        Object.assign(lists, {slices, range});
     }
 }
