@@ -32,6 +32,8 @@ def make(lib):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     masks = make(Library(*sys.argv[1:]))[1]
     words = (ctypes.c_uint32 * masks.word_count).from_address(masks.words)
     ids = (ctypes.c_uint32 * masks.id_count).from_address(masks.ids)

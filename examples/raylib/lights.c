@@ -141,8 +141,8 @@ static void upload_masks(int width, int height) {
     lightbin_grid_constants grid;
     succeed(view == NULL ? lightbin_view_create(&options, &view) : lightbin_view_update(view, &options));
     succeed(lightbin_bin_masks(binner, view, &given, NULL, &masks));
-    if (masks.word_count > block_bytes / 4) fail("the block is too small: take larger tiles");
     succeed(lightbin_get_grid_constants(view, 0, 0, &grid));
+    if (masks.word_count > block_bytes / 4) fail("the block is too small: take larger tiles");
 
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block);
     glBufferSubData(GL_UNIFORM_BUFFER, 0, (GLsizeiptr)(masks.word_count * 4), masks.words);

@@ -81,7 +81,7 @@ bool replay(const std::string& file, const std::string& picture) {
         for (const std::uint32_t id : lights)
             ++cells_of_light.at(id);
     }
-    std::printf("frame        %d x %d pixels in %d x %d tiles%s; %u lights, of which %u are out of view and "
+    std::printf("frame        %d x %d pixels in %d x %d tiles%s; %u lights, of which %u are out of view or off and "
                 "%u rejected\n",
                 frame.width, frame.height, frame.tiles_x(), frame.tiles_y(),
                 frame.clusters ? (" and " + std::to_string(frame.slices()) + " slices").c_str() : "",
@@ -102,9 +102,10 @@ bool replay(const std::string& file, const std::string& picture) {
         std::printf("made again   not: %s\n", error.what());
     }
     const Verdict verdict = check_exactly(frame, cells);
-    std::printf("exact check  %llu of %llu missed: pairs of a light and a cell that does not list it\n",
+    std::printf("exact check  %llu of %llu missed: pairs of a light and a cell that does not list it%s\n",
                 static_cast<unsigned long long>(verdict.missed),
-                static_cast<unsigned long long>(verdict.pairs));
+                static_cast<unsigned long long>(verdict.pairs),
+                cells.lights.empty() ? "; the viewport has no pixels" : "");
     if (verdict.undecided > 0)
         std::printf("             %llu pairs could not be decided\n",
                     static_cast<unsigned long long>(verdict.undecided));
