@@ -55,26 +55,6 @@ struct ShapeTally {
     std::map<std::string, Set> sets;
 };
 
-/// The half-spaces of a cell in view space or, if a view matrix is given, in world space.
-class CellPlanes {
-public:
-    CellPlanes(const Oracle& oracle, const ViewMatrix* matrix) : oracle_(oracle) {
-        if (matrix) world_.emplace(*matrix);
-    }
-    std::vector<HalfSpace> operator()(const Block& tiles, const Depths& depths) const {
-        std::vector<HalfSpace> planes =
-            oracle_.half_spaces(oracle_.columns(tiles.x0, tiles.x1), oracle_.rows(tiles.y0, tiles.y1), depths);
-        if (world_)
-            for (HalfSpace& plane : planes)
-                plane = world_->preimage(plane);
-        return planes;
-    }
-
-private:
-    const Oracle& oracle_;
-    std::optional<ExactView> world_;
-};
-
 /// Lights of one kind in front of a camera, in view space or, with a view matrix, in world space.
 template <class Kind> class Subjects {
 public:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "spheres.hpp"
+#include "world.hpp"
 
 #include "../../bench/exact/spot.hpp"
 
@@ -42,6 +43,17 @@ inline std::string text(const SpotLight& s) {
                   static_cast<double>(s.axis_x), static_cast<double>(s.axis_y), static_cast<double>(s.axis_z),
                   static_cast<double>(s.cosine));
     return buffer;
+}
+
+/// Returns world-space spots that a view matrix moves about where they are wanted in view space.
+inline std::vector<SpotLight> into_world(std::vector<SpotLight> lights, const ViewMatrix& view) {
+    for (SpotLight& s : lights) {
+        const float size = s.ball.w / std::hypot(s.axis_x, s.axis_y, s.axis_z);
+        const Light tip = {s.ball.x + size * s.axis_x, s.ball.y + size * s.axis_y, s.ball.z + size * s.axis_z, 0};
+        const std::vector<Light> both = into_world({s.ball, tip}, view);
+        s = {both[0], both[1].x - both[0].x, both[1].y - both[0].y, both[1].z - both[0].z, s.cosine};
+    }
+    return lights;
 }
 
 namespace spots {

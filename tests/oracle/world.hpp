@@ -8,8 +8,7 @@
 
 #include "spheres.hpp"
 
-#include "../../bench/exact/filter.hpp"
-#include "../../bench/exact/oracle.hpp"
+#include "../../bench/exact/truth.hpp"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -120,6 +119,26 @@ struct ExactView {
     HalfSpace preimage(const HalfSpace& h) const {
         return {{dot(h.a, column[0]), dot(h.a, column[1]), dot(h.a, column[2])}, dot(h.a, column[3]) + h.b};
     }
+};
+
+/// The half-spaces of a cell in view space or, if a view matrix is given, in world space.
+class CellPlanes {
+public:
+    CellPlanes(const Oracle& oracle, const ViewMatrix* matrix) : oracle_(oracle) {
+        if (matrix) world_.emplace(*matrix);
+    }
+    std::vector<HalfSpace> operator()(const Block& tiles, const Depths& depths) const {
+        std::vector<HalfSpace> planes =
+            oracle_.half_spaces(oracle_.columns(tiles.x0, tiles.x1), oracle_.rows(tiles.y0, tiles.y1), depths);
+        if (world_)
+            for (HalfSpace& plane : planes)
+                plane = world_->preimage(plane);
+        return planes;
+    }
+
+private:
+    const Oracle& oracle_;
+    std::optional<ExactView> world_;
 };
 
 /// A sphere around the ellipsoid that a light becomes in view space, for tests in double: mostly it does not meet the

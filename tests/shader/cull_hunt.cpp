@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+// Hunts for a light that the lists of the GPU miss, in random scenes: the passes of lightbin/shader_cull.hpp make lists
+// in OpenGL 4.3, a Binner makes them of the same input, and exact arithmetic decides wherever they differ.
+//
+// cull_hunt SCENES [FIRST STEP]   every STEP-th scene below SCENES from FIRST on. A scene is known by its number:
+//                                 `cull_hunt 8 7 1` makes scene 7 alone.
+//
+// An entry of the Binner that the GPU lacks must be one of a light that does not reach the cell: a fault if it does, or
+// if neither is proven. Some of the entries that only the GPU has are asked, too: if the light reaches the cell, it was
+// the Binner that missed it. Prints a table of what was found; the exit status is 1 after a fault.
+#include "../../bench/gpu/device.hpp"
+#include "../oracle/families.hpp"
+#include "../oracle/spots.hpp"
+#include "../oracle/world.hpp"
+
+#include "../../bench/exact/truth.hpp"
+#include "../oracle/library_view.hpp"
+
+#include "cull_cases.hpp"
+
+#include <cstdlib>
+#include <optional>
+
+namespace {
+
+using namespace oracle;
+using lightbin::Slicing;
+
+/// A scene for both the Binner and the passes.
+struct HuntScene {
+    Camera camera;
+    CullCase made;
+    std::vector<SpotLight> lights;  ///< of spheres, the ball alone counts
+    std::optional<ViewMatrix> matrix;
+    std::array<std::vector<float>, 2> bounds;
+    lightbin::Slices slices;
+
+    bool spots() const { return made.options.kind == lightbin::CullKind::spot; }
+    bool clusters() const { return made.options.slicing == Slicing::clusters; }
+    bool has_bounds() const { return clusters() ? made.options.bounded : made.options.depth_test; }
+};
+
+/// Returns a viewport of 1 to 1919 by 1 to 1079 pixels, small ones as often as large ones.
+Screen random_screen(Random& random, int most_tiles) {
+    const auto side = [&](int most) {
+        return random.chance(0.1) ? most : static_cast<int>(std::exp(random.uniform(0, std::log(most + 0.9))));
+    };
+    constexpr int sizes[] = {1, 2, 7, 8, 16, 32, 57, 64, 256};
+    Screen screen{side(1919), side(1079), sizes[random.integer(0, 8)], random.chance(0.5)};
+    const auto tiles = [&](int pixels) { return (pixels + screen.tile - 1) / screen.tile; };
+    while (tiles(screen.width) * tiles(screen.height) > most_tiles)
+        screen.tile *= 2;
+    return screen;
+}
+
+Camera random_camera(Random& random, int most_tiles) {
+    const Screen screen = random_screen(random, most_tiles);
+    const auto& kinds = camera_kinds();
+    const auto& kind = kinds[static_cast<std::size_t>(random.integer(0, static_cast<int>(kinds.size()) - 1))];
+    Camera camera = camera_of("", random.chance(0.3) ? kind.lens_of(aspect_of(screen))
+                                                     : families::any_lens(aspect_of(screen), random),
+                              screen);
+    if (random.chance(0.2)) camera.columns = random.integer(1, 20), camera.rows = random.integer(1, 13);
+    camera.turned = random.chance(0.2);
+    return camera;
+}
+
+/// Returns lights of one of the oracle's sets, or of all of them.
+std::vector<SpotLight> random_lights(const Camera& camera, bool spots, std::size_t count, Random& random) {
+    const Aim aim(camera);
+    const auto one_of = [&](const auto& sets) {
+        return sets[static_cast<std::size_t>(random.bits() % sets.size())].one;
+    };
+    constexpr float cosines[] = {0.999994f, 0, -0.0f, -1, 1, -0.75f, 0.70710678f, 0x1p-20f};
+    const bool mixed = random.chance(0.5);
+    auto sphere = one_of(sphere_sets());
+    auto spot = one_of(spot_sets());
+    std::vector<SpotLight> lights;
+    while (lights.size() < count) {
+        if (mixed) sphere = one_of(sphere_sets()), spot = one_of(spot_sets());
+        lights.push_back(spots ? spot(aim, random) : SpotLight{sphere(aim, random), 0, 0, 0, -1});
+        if (spots && random.chance(0.1)) lights.back().cosine = cosines[random.integer(0, 7)];
+    }
+    return lights;
+}
+
+lightbin::Slices random_slices(const Aim& aim, const std::vector<Light>& balls, Random& random) {
+    const int count = random.integer(1, 20);
+    const float least = static_cast<float>(aim.unit), most = least * static_cast<float>(random.power_of_two(1, 12));
+    if (random.chance(0.3)) return *lightbin::Slices::exponential(count, least, most);
+    if (random.chance(0.2)) return *lightbin::Slices::linear(count, 0, most);
+    return slices_at_ends(aim, balls, random);
+}
+
+std::vector<lightbin::Sphere> as_spheres(const std::vector<SpotLight>& lights) {
+    std::vector<lightbin::Sphere> spheres;
+    for (const SpotLight& s : lights)
+        spheres.push_back({s.ball.x, s.ball.y, s.ball.z, s.ball.w});
+    return spheres;
+}
+std::vector<lightbin::Spot> as_spots(const std::vector<SpotLight>& lights) {
+    std::vector<lightbin::Spot> spots;
+    for (const SpotLight& s : lights)
+        spots.push_back({s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine});
+    return spots;
+}
+
+HuntScene random_scene(std::uint64_t number) {
+    Random random(seed_of("cull_hunt") + number * 0x9e3779b97f4a7c15u);
+    lightbin::CullOptions options;
+    const bool many = random.chance(0.05);  // more than a step of 1,024 lights
+    if (random.chance(0.5)) options.slicing = Slicing::clusters;
+    const bool clusters = options.slicing == Slicing::clusters;
+    const Camera camera = random_camera(random, many ? 20 : clusters ? 250 : 2500);
+    const lightbin::View view = *library_view(camera);
+    options.kind = random.chance(0.6) ? lightbin::CullKind::spot : lightbin::CullKind::sphere;
+    options.depth_test = random.chance(0.7);
+    options.bounded = clusters && random.chance(0.4);
+    options.max_only = !clusters && options.depth_test && random.chance(0.2);
+    options.orthographic = view.orthographic();
+    options.world_space = random.chance(0.4);
+    options.ids = random.chance(0.5) ? lightbin::IdWidth::u16 : lightbin::IdWidth::u32;
+    const bool spots = options.kind == lightbin::CullKind::spot;
+    options.lights_at.stride = spots ? 8 : 4;
+    const auto count = static_cast<std::size_t>(many ? random.integer(1000, 2500) : random.integer(1, 60));
+    std::vector<SpotLight> lights = random_lights(camera, spots, count, random);
+
+    const Aim aim(camera);
+    Scene depths{camera, {}, {}, {}};
+    for (const SpotLight& light : lights)
+        depths.lights.push_back(light.ball);
+    families::set_bounds(depths, aim, random, random.chance(0.2) ? 0.5 : 0.02);
+    for (std::size_t tile = 0; tile < depths.min.size(); ++tile)
+        if (random.chance(0.03)) depths.max[tile] = -(depths.min[tile] = -HUGE_VALF);
+    HuntScene scene{camera, {"", view, options, {}, static_cast<std::uint32_t>(count)}, {}, {},
+                    {depths.min, depths.max}, random_slices(aim, depths.lights, random)};
+    if (clusters) scene.made.slices = scene.slices;
+    if (options.world_space) {
+        const std::vector<ViewMatrix> matrices = view_matrices(random);
+        do  // cull_shader() takes rotations with a scale
+            scene.matrix = matrices[static_cast<std::size_t>(random.bits() % matrices.size())];
+        while (scene.matrix->stretch == 0 || scene.matrix->large);
+        lights = into_world(lights, *scene.matrix);
+        scene.made.to_view = lightbin::detail::to_matrix(scene.matrix->m);
+    }
+    scene.made.lights = spots ? words_of(as_spots(lights)) : words_of(as_spheres(lights));
+    scene.made.room = static_cast<std::uint32_t>(count * view.tile_count()) *
+                      static_cast<std::uint32_t>(clusters ? scene.slices.count() : 1);
+    scene.made.z_bounds = cull_depths({view, {}, scene.slices}, scene.bounds, options.depth_test, options.slicing,
+                                      options.bounded);
+    scene.lights = std::move(lights);
+    return scene;
+}
+
+/// Makes the lists by the passes, whose programs the device keeps.
+CulledGrid gpu_lists(GpuDevice& device, const HuntScene& scene, const lightbin::CullPlan& plan) {
+    const auto put = [&](const char* name, const auto& elements) {
+        const auto bytes = std::as_bytes(std::span(elements));
+        device.make_buffer(name, std::max(bytes.size(), std::size_t{16}));
+        if (!bytes.empty()) device.write(name, bytes);
+    };
+    put("grid", std::span(&plan.constants, 1));
+    put("lights", scene.made.lights);
+    put("z_bounds", scene.made.z_bounds);
+    if (scene.clusters()) put("slices", lightbin::shader_slices(scene.slices));
+    for (const auto& [name, blank] : blank_buffers(plan))
+        put(name.c_str(), blank);
+    std::vector<ComputePass> passes;
+    for (const lightbin::CullPass pass : lightbin::cull_passes)
+        passes.push_back({to_string(pass), *cull_shader(pass, scene.made.options), plan.groups_of(pass).x,
+                          plan.groups_of(pass).y});
+    device.set_passes(passes);
+    device.run(false);
+    CulledGrid grid;
+    grid.narrow = scene.made.options.ids == lightbin::IdWidth::u16;
+    const auto read = [&](const char* name, std::uint64_t bytes) {
+        return device.read(name, static_cast<std::size_t>(bytes / 4));
+    };
+    std::memcpy(&grid.totals, read("scratch", sizeof grid.totals).data(), sizeof grid.totals);
+    grid.tiles.resize(static_cast<std::size_t>(plan.bytes.tiles / 8));
+    std::memcpy(grid.tiles.data(), read("tiles", plan.bytes.tiles).data(), grid.tiles.size() * 8);
+    grid.lists = read("lists", plan.bytes.lists);
+    return grid;
+}
+
+/// Makes the lists by a Binner.
+BuiltLists binner_lists(const HuntScene& scene, lightbin::LightCounts& counts) {
+    BuiltScene built{scene.made.view, {}, scene.slices};
+    if (scene.has_bounds()) built.bounds.max = scene.bounds[1];
+    if (scene.has_bounds() && !scene.made.options.max_only) built.bounds.min = scene.bounds[0];
+    const auto of = [&](const auto& lights) {
+        auto source = lightbin::world_space(lights, scene.matrix ? scene.matrix->m : identity);
+        if (!scene.matrix) source.to_view.reset();
+        using lightbin::Options;
+        constexpr Options clusters{.slicing = Slicing::clusters}, tested{.depth_test = true},
+            both{.depth_test = true, .slicing = Slicing::clusters};
+        const bool depth_test = scene.made.options.depth_test;
+        if (scene.clusters())
+            return depth_test ? binned<both, true>(built, source, counts) : binned<clusters, true>(built, source, counts);
+        return depth_test ? binned<tested>(built, source, counts) : binned<Options{}>(built, source, counts);
+    };
+    return scene.spots() ? of(as_spots(scene.lights)) : of(as_spheres(scene.lights));
+}
+
+/// Decides by exact arithmetic whether a scene's lights reach its cells.
+class Referee {
+public:
+    explicit Referee(const HuntScene& scene)
+        : scene_(scene), truth_(scene.camera), planes_(truth_.oracle, scene.matrix ? &*scene.matrix : nullptr) {
+        std::optional<AroundImage> around;
+        if (scene.matrix) around.emplace(truth_.oracle, *scene.matrix);
+        for (const SpotLight& light : scene.lights) {
+            const bool bad = is_bad(light);
+            exact_.push_back(exact_spot(bad ? SpotLight{{}, 0, 0, 1, 1} : light));
+            if (bad || around) {
+                balls_.push_back(bad ? FlatBall{} : (*around)(light.ball));
+                continue;
+            }
+            const CameraBall seen = truth_.oracle.in_camera(exact_.back().ball);
+            balls_.push_back({nearly(seen.x), nearly(seen.y), nearly(seen.depth),
+                              seen.all ? HUGE_VAL : nearly(seen.radius)});
+        }
+    }
+
+    /// Returns whether a light reaches a cell; nothing if neither is proven.
+    std::optional<bool> reaches(std::size_t cell, std::size_t light) {
+        const std::size_t tiles = scene_.made.view.tile_count(), tile = cell % tiles, slice = cell / tiles;
+        const float low = bound(0, tile), high = bound(1, tile);
+        if (low > high || low == HUGE_VALF || high == -HUGE_VALF) return false;
+        float min = low, max = high;
+        if (scene_.clusters()) {  // whose slice is a part of the cell or, if it is not within the bounds, nothing is
+            const auto boundaries = scene_.slices.boundaries();
+            min = slice > 0 ? boundaries[slice - 1] : -HUGE_VALF;
+            max = slice < boundaries.size() ? boundaries[slice] : HUGE_VALF;
+            if (min > high || max < low) return false;
+        }
+        const FlatDepths flat = {std::max(static_cast<double>(min), truth_.range.min),
+                                 std::min(static_cast<double>(max), truth_.range.max)};
+        const int x = static_cast<int>(tile) % scene_.made.view.tiles_x(),
+                  y = static_cast<int>(tile) / scene_.made.view.tiles_x();
+        if (flat.surely_empty() || truth_.filter.apart(x, x + 1, y, y + 1, flat, balls_[light])) return false;
+        const Depths depths = truth_.oracle.depths(min, max);
+        if (depths.contains_none()) return false;
+        const std::vector<HalfSpace> planes = planes_({x, x + 1, y, y + 1}, depths);
+        const ExactSpot& spot = exact_[light];
+        for (const HalfSpace& plane : planes) {
+            const Rational at = plane.at(spot.ball.centre);
+            if (!spot.ball.all && at < 0 && square(at) > square(spot.ball.radius) * dot(plane.a, plane.a)) return false;
+        }
+        return oracle::meets(planes, spot);
+    }
+
+private:
+    /// A tile's minimum or maximum, infinite where there is none.
+    float bound(std::size_t side, std::size_t tile) const {
+        const bool given = scene_.has_bounds() && (side == 1 || !scene_.made.options.max_only);
+        const float bound = given ? scene_.bounds[side][tile] : std::nanf("");
+        return !std::isnan(bound) ? bound : side == 0 ? -HUGE_VALF : HUGE_VALF;
+    }
+
+    const HuntScene& scene_;
+    Truth truth_;
+    CellPlanes planes_;
+    std::vector<ExactSpot> exact_;
+    std::vector<FlatBall> balls_;
+};
+
+/// Returns whether the passes list a light everywhere, as one of its numbers is beyond 2^40.
+bool is_everywhere(const HuntScene& scene, const lightbin::CullConstants& constants, const Light& light) {
+    const double limit = 0x1p40, at[] = {light.x, light.y, light.z};
+    bool far_away = static_cast<double>(light.w) > limit;
+    for (const double each : at)
+        far_away |= std::abs(each) > limit;
+    if (!scene.matrix) return far_away;
+    double distance = 0;
+    for (int row = 0; row < 3; ++row) {
+        const auto m = [&](int column) { return static_cast<double>(scene.matrix->m[column][row]); };
+        far_away |= std::abs(m(0) * at[0] + m(1) * at[1] + m(2) * at[2] + m(3)) > limit;
+        distance += std::abs(at[row] - static_cast<double>(constants.origin[row]));
+    }
+    return far_away || static_cast<double>(light.w * constants.stretch) > limit ||
+           distance > static_cast<double>(constants.max_distance);
+}
+
+struct HuntTally {
+    std::size_t scenes = 0, entries = 0;
+    std::size_t lacked = 0;       ///< entries of the Binner that the GPU has not; the light does not reach the cell
+    std::size_t scenes_lacking = 0;
+    std::size_t excess = 0;       ///< entries that only the GPU has
+    std::size_t everywhere = 0;   ///< entries of those, of lights that it lists everywhere; not part of `excess`
+    std::size_t asked = 0;        ///< entries of both that exact arithmetic was asked about
+    std::size_t missed = 0, open = 0, binner_missed = 0, wrong = 0;  ///< faults
+
+    std::size_t faults() const { return missed + open + binner_missed + wrong; }
+    void add(const HuntTally& other) {
+        for (const auto member : {&HuntTally::scenes, &HuntTally::entries, &HuntTally::lacked, &HuntTally::scenes_lacking,
+                                  &HuntTally::excess, &HuntTally::everywhere, &HuntTally::asked, &HuntTally::missed,
+                                  &HuntTally::open, &HuntTally::binner_missed, &HuntTally::wrong})
+            this->*member += other.*member;
+    }
+    void print(const std::string& name) const {
+        const double percent = entries == 0 ? 0 : 100 * static_cast<double>(excess) / static_cast<double>(entries);
+        std::printf("%-28s %6zu %9zu %5zu %6zu %6zu %9zu %8.3f %10zu %8zu %7zu\n", name.c_str(), scenes, entries,
+                    missed + open + wrong, scenes_lacking, lacked, excess, percent, everywhere, asked, binner_missed);
+    }
+};
+
+HuntTally hunt(GpuDevice& device, std::uint64_t number) {
+    const HuntScene scene = random_scene(number);
+    const lightbin::CullPlan plan = plan_of(scene.made);
+    const CulledGrid grid = gpu_lists(device, scene, plan);
+    lightbin::LightCounts counts;
+    const BuiltLists expected = binner_lists(scene, counts);
+    const CullTally order = compare_lists(grid, expected);
+    HuntTally tally{.scenes = 1, .entries = expected.ids.size()};
+    tally.wrong = order.wrong + (grid.totals.rejected != counts.rejected);
+    Referee referee(scene);
+    const auto fault = [&](std::size_t& count, const char* what, std::size_t cell, std::size_t light) {
+        if (++count > 1) return;
+        std::printf("scene %llu: cell %zu, light %zu %s: %s\n", static_cast<unsigned long long>(number), cell, light,
+                    text(scene.lights[light]).c_str(), what);
+    };
+    struct Pair {
+        std::size_t cell, light;
+    };
+    std::vector<Pair> more;
+    for (std::size_t cell = 0; cell < expected.tiles.size() && order.wrong == 0; ++cell) {
+        std::vector<std::uint32_t> own, lacked, excess;
+        for (std::uint32_t i = 0; i < grid.tiles[cell].count; ++i)
+            own.push_back(grid.id(grid.tiles[cell].offset + i));
+        const auto wanted = expected.of(cell);
+        std::ranges::set_difference(wanted, own, std::back_inserter(lacked));
+        std::ranges::set_difference(own, wanted, std::back_inserter(excess));
+        for (const std::uint32_t light : lacked) {
+            const std::optional<bool> reaches = referee.reaches(cell, light);
+            ++tally.asked;
+            if (!reaches)
+                fault(tally.open, "the GPU lacks it, and whether it reaches the cell is open", cell, light);
+            else if (*reaches)
+                fault(tally.missed, "the GPU misses it", cell, light);
+            else
+                ++tally.lacked;
+        }
+        for (const std::uint32_t light : excess) {
+            const bool everywhere = is_everywhere(scene, plan.constants, scene.lights[light].ball);
+            ++(everywhere ? tally.everywhere : tally.excess);
+            if (!everywhere) more.push_back({cell, light});
+        }
+    }
+    tally.scenes_lacking = tally.lacked > 0;
+    constexpr std::size_t most_asked = 100;
+    for (std::size_t i = 0; i < more.size(); i += more.size() / most_asked + 1) {
+        ++tally.asked;
+        if (referee.reaches(more[i].cell, more[i].light) == true)
+            fault(tally.binner_missed, "the Binner misses it", more[i].cell, more[i].light);
+    }
+    if (tally.wrong > 0)
+        std::printf("scene %llu: the lists are out of order, or their totals are wrong\n",
+                    static_cast<unsigned long long>(number));
+    return tally;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const std::uint64_t scenes = std::strtoull(arguments[1], nullptr, 10);
+    const Share share = share_of(count - 1, arguments + 1);
+    GpuDevice device;
+    HuntTally tallies[8], all;
+    for (std::uint64_t number = share.first; number < scenes; number += share.count) {
+        const HuntScene scene = random_scene(number);
+        const std::size_t kind = (scene.spots() ? 4u : 0u) + (scene.clusters() ? 2u : 0u) +
+                                 (scene.made.options.depth_test ? 1u : 0u);
+        const HuntTally tally = hunt(device, number);
+        tallies[kind].add(tally);
+        all.add(tally);
+    }
+    std::printf("%-28s %6s %9s %5s %6s %6s %9s %8s %10s %8s %7s\n", "", "scenes", "entries", "fault", "lacking", "lacked",
+                "excess", "%", "everywhere", "asked", "Binner");
+    for (std::size_t kind = 0; kind < 8; ++kind)
+        tallies[kind].print(std::string(kind & 4 ? "spots" : "spheres") + (kind & 2 ? ", clusters" : ", tiles") +
+                            (kind & 1 ? ", depth test" : ""));
+    all.print("all");
+    return all.scenes > 0 && all.faults() == 0 ? 0 : 1;
+}
