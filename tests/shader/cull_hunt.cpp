@@ -2,21 +2,19 @@
 // Hunts for a light that the lists of the GPU miss, in random scenes: the passes of lightbin/shader_cull.hpp make lists
 // in OpenGL 4.3, a Binner makes them of the same input, and exact arithmetic decides wherever they differ.
 //
-// cull_hunt SCENES [FIRST STEP]   every STEP-th scene below SCENES from FIRST on. A scene is known by its number:
+// cull_hunt SCENES [FIRST STEP]   every STEP-th scene below SCENES, from FIRST on. Scenes are made from their numbers:
 //                                 `cull_hunt 8 7 1` makes scene 7 alone.
 //
-// An entry of the Binner that the GPU lacks must be one of a light that does not reach the cell: a fault if it does, or
-// if neither is proven. Some of the entries that only the GPU has are asked, too: if the light reaches the cell, it was
-// the Binner that missed it. Prints a table of what was found; the exit status is 1 after a fault.
-#include "../../bench/gpu/device.hpp"
-#include "../oracle/families.hpp"
-#include "../oracle/spots.hpp"
-#include "../oracle/world.hpp"
+// An entry of the Binner that the GPU lacks must be one of a light that does not reach the cell. Of the entries that only
+// the GPU has, up to 100 a scene are asked about: a light that reaches the cell was missed by the Binner. Prints a table,
+// whose columns are the members of HuntTally; the exit status is 1 if there are faults.
+#include "cull_cases.hpp"
 
 #include "../../bench/exact/truth.hpp"
+#include "../../bench/gpu/device.hpp"
+#include "../oracle/families.hpp"
 #include "../oracle/library_view.hpp"
-
-#include "cull_cases.hpp"
+#include "../oracle/spots.hpp"
 
 #include <cstdlib>
 #include <optional>
@@ -284,79 +282,79 @@ bool is_everywhere(const HuntScene& scene, const lightbin::CullConstants& consta
 
 struct HuntTally {
     std::size_t scenes = 0, entries = 0;
-    std::size_t lacked = 0;       ///< entries of the Binner that the GPU has not; the light does not reach the cell
-    std::size_t scenes_lacking = 0;
-    std::size_t excess = 0;       ///< entries that only the GPU has
-    std::size_t everywhere = 0;   ///< entries of those, of lights that it lists everywhere; not part of `excess`
-    std::size_t asked = 0;        ///< entries of both that exact arithmetic was asked about
-    std::size_t missed = 0, open = 0, binner_missed = 0, wrong = 0;  ///< faults
+    std::size_t missed = 0;      ///< entries of the Binner that the GPU has not, although the light reaches the cell
+    std::size_t lacked = 0;      ///< those of lights that do not reach the cell
+    std::size_t lacking = 0;     ///< scenes with such an entry
+    std::size_t more = 0;        ///< entries that only the GPU has
+    std::size_t everywhere = 0;  ///< those of lights that it lists everywhere; they are not counted in `more`
+    std::size_t asked = 0;       ///< entries of which exact arithmetic was asked whether the light reaches the cell
+    std::size_t reach = 0;       ///< entries that only the GPU has although the light reaches: the Binner misses it
+    std::size_t faults = 0;      ///< all that were missed or left open, and grids with wrong ranges or totals
 
-    std::size_t faults() const { return missed + open + binner_missed + wrong; }
     void add(const HuntTally& other) {
-        for (const auto member : {&HuntTally::scenes, &HuntTally::entries, &HuntTally::lacked, &HuntTally::scenes_lacking,
-                                  &HuntTally::excess, &HuntTally::everywhere, &HuntTally::asked, &HuntTally::missed,
-                                  &HuntTally::open, &HuntTally::binner_missed, &HuntTally::wrong})
+        using Tally = HuntTally;
+        for (const auto member : {&Tally::scenes, &Tally::entries, &Tally::missed, &Tally::lacked, &Tally::lacking,
+                                  &Tally::more, &Tally::everywhere, &Tally::asked, &Tally::reach, &Tally::faults})
             this->*member += other.*member;
     }
     void print(const std::string& name) const {
-        const double percent = entries == 0 ? 0 : 100 * static_cast<double>(excess) / static_cast<double>(entries);
-        std::printf("%-28s %6zu %9zu %5zu %6zu %6zu %9zu %8.3f %10zu %8zu %7zu\n", name.c_str(), scenes, entries,
-                    missed + open + wrong, scenes_lacking, lacked, excess, percent, everywhere, asked, binner_missed);
+        const double percent = 100.0 * static_cast<double>(more) / static_cast<double>(std::max<std::size_t>(entries, 1));
+        std::printf("%-29s %6zu %9zu %6zu %7zu %7zu %8zu %7.3f %10zu %7zu %5zu %6zu\n", name.c_str(), scenes, entries,
+                    missed, lacked, lacking, more, percent, everywhere, asked, reach, faults);
     }
 };
 
-HuntTally hunt(GpuDevice& device, std::uint64_t number) {
-    const HuntScene scene = random_scene(number);
+/// Compares the lists of one scene.
+HuntTally hunt(GpuDevice& device, const HuntScene& scene, const std::string& name) {
     const lightbin::CullPlan plan = plan_of(scene.made);
     const CulledGrid grid = gpu_lists(device, scene, plan);
     lightbin::LightCounts counts;
     const BuiltLists expected = binner_lists(scene, counts);
-    const CullTally order = compare_lists(grid, expected);
     HuntTally tally{.scenes = 1, .entries = expected.ids.size()};
-    tally.wrong = order.wrong + (grid.totals.rejected != counts.rejected);
+    const auto fault = [&](const std::string& what) {
+        if (++tally.faults == 1) std::printf("%s: %s\n", name.c_str(), what.c_str());
+    };
+    if (compare_lists(grid, expected).wrong > 0 || grid.totals.rejected != counts.rejected) {
+        fault("ranges, the order of ids or totals are wrong");
+        return tally;
+    }
     Referee referee(scene);
-    const auto fault = [&](std::size_t& count, const char* what, std::size_t cell, std::size_t light) {
-        if (++count > 1) return;
-        std::printf("scene %llu: cell %zu, light %zu %s: %s\n", static_cast<unsigned long long>(number), cell, light,
-                    text(scene.lights[light]).c_str(), what);
+    // Asks about an entry that one side has; those of lights that reach the cell are counted in `missed`.
+    const auto ask = [&](std::size_t cell, std::size_t light, std::size_t& missed, const char* who) {
+        ++tally.asked;
+        const std::optional<bool> reaches = referee.reaches(cell, light);
+        if (reaches == false) return;
+        missed += reaches == true;
+        fault("cell " + std::to_string(cell) + ", light " + std::to_string(light) + " " + text(scene.lights[light]) +
+              (reaches ? " is missed by " : " is open and lacked by ") + who);
     };
     struct Pair {
         std::size_t cell, light;
     };
-    std::vector<Pair> more;
-    for (std::size_t cell = 0; cell < expected.tiles.size() && order.wrong == 0; ++cell) {
-        std::vector<std::uint32_t> own, lacked, excess;
+    std::vector<Pair> lacked, more;
+    for (std::size_t cell = 0; cell < expected.tiles.size(); ++cell) {
+        std::vector<std::uint32_t> own, others;
         for (std::uint32_t i = 0; i < grid.tiles[cell].count; ++i)
             own.push_back(grid.id(grid.tiles[cell].offset + i));
         const auto wanted = expected.of(cell);
-        std::ranges::set_difference(wanted, own, std::back_inserter(lacked));
-        std::ranges::set_difference(own, wanted, std::back_inserter(excess));
-        for (const std::uint32_t light : lacked) {
-            const std::optional<bool> reaches = referee.reaches(cell, light);
-            ++tally.asked;
-            if (!reaches)
-                fault(tally.open, "the GPU lacks it, and whether it reaches the cell is open", cell, light);
-            else if (*reaches)
-                fault(tally.missed, "the GPU misses it", cell, light);
+        std::ranges::set_difference(wanted, own, std::back_inserter(others));
+        for (const std::uint32_t light : others)
+            lacked.push_back({cell, light});
+        others.clear();
+        std::ranges::set_difference(own, wanted, std::back_inserter(others));
+        for (const std::uint32_t light : others)
+            if (is_everywhere(scene, plan.constants, scene.lights[light].ball))
+                ++tally.everywhere;
             else
-                ++tally.lacked;
-        }
-        for (const std::uint32_t light : excess) {
-            const bool everywhere = is_everywhere(scene, plan.constants, scene.lights[light].ball);
-            ++(everywhere ? tally.everywhere : tally.excess);
-            if (!everywhere) more.push_back({cell, light});
-        }
+                more.push_back({cell, light});
     }
-    tally.scenes_lacking = tally.lacked > 0;
-    constexpr std::size_t most_asked = 100;
-    for (std::size_t i = 0; i < more.size(); i += more.size() / most_asked + 1) {
-        ++tally.asked;
-        if (referee.reaches(more[i].cell, more[i].light) == true)
-            fault(tally.binner_missed, "the Binner misses it", more[i].cell, more[i].light);
-    }
-    if (tally.wrong > 0)
-        std::printf("scene %llu: the lists are out of order, or their totals are wrong\n",
-                    static_cast<unsigned long long>(number));
+    for (const Pair& pair : lacked)
+        ask(pair.cell, pair.light, tally.missed, "the GPU");
+    for (std::size_t i = 0; i < more.size(); i += more.size() / 100 + 1)
+        ask(more[i].cell, more[i].light, tally.reach, "the Binner");
+    tally.lacked = lacked.size() - tally.missed;
+    tally.lacking = tally.lacked > 0;
+    tally.more = more.size();
     return tally;
 }
 
@@ -364,22 +362,20 @@ HuntTally hunt(GpuDevice& device, std::uint64_t number) {
 
 int main(int count, char** arguments) {
     const std::uint64_t scenes = std::strtoull(arguments[1], nullptr, 10);
-    const Share share = share_of(count - 1, arguments + 1);
+    const Share share = share_of(count, arguments);
     GpuDevice device;
     HuntTally tallies[8], all;
     for (std::uint64_t number = share.first; number < scenes; number += share.count) {
         const HuntScene scene = random_scene(number);
-        const std::size_t kind = (scene.spots() ? 4u : 0u) + (scene.clusters() ? 2u : 0u) +
-                                 (scene.made.options.depth_test ? 1u : 0u);
-        const HuntTally tally = hunt(device, number);
-        tallies[kind].add(tally);
+        const HuntTally tally = hunt(device, scene, "scene " + std::to_string(number));
+        tallies[4 * scene.spots() + 2 * scene.clusters() + scene.made.options.depth_test].add(tally);
         all.add(tally);
     }
-    std::printf("%-28s %6s %9s %5s %6s %6s %9s %8s %10s %8s %7s\n", "", "scenes", "entries", "fault", "lacking", "lacked",
-                "excess", "%", "everywhere", "asked", "Binner");
-    for (std::size_t kind = 0; kind < 8; ++kind)
+    std::printf("%-29s %6s %9s %6s %7s %7s %8s %7s %10s %7s %5s %6s\n", "", "scenes", "entries", "missed", "lacked",
+                "lacking", "more", "%", "everywhere", "asked", "reach", "faults");
+    for (unsigned kind = 0; kind < 8; ++kind)
         tallies[kind].print(std::string(kind & 4 ? "spots" : "spheres") + (kind & 2 ? ", clusters" : ", tiles") +
                             (kind & 1 ? ", depth test" : ""));
     all.print("all");
-    return all.scenes > 0 && all.faults() == 0 ? 0 : 1;
+    return all.scenes > 0 && all.faults == 0 ? 0 : 1;
 }
