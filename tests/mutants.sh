@@ -27,6 +27,11 @@ try() {
             examples/tiled_forward/gl_program.cpp -lepoxy"
         arguments=430
         ;;
+    cull_hunt)
+        sources="-DLIGHTBIN_NO_SIMD -Iexamples/tiled_forward tests/shader/cull_hunt.cpp bench/gpu/device.cpp
+            examples/tiled_forward/gl_context.cpp examples/tiled_forward/gl_program.cpp -lepoxy -lgmp"
+        arguments=300
+        ;;
     cull_twin)
         # shellcheck disable=SC2086  # several flags
         g++ $flags tests/shader/cull_twin_text.cpp -o "$place/text" && "$place/text" >"$place/cull_twin_text.inc"

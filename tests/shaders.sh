@@ -1,9 +1,9 @@
 #!/bin/sh
 # Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as root or
-# with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them. Vulkan under its
-# validation layer, WebGPU by its two implementations (Chromium's Dawn and Firefox's wgpu, with their compilers Tint
-# and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine. Installs what is missing; what can't be had
-# is skipped, and the summary says so. Takes about half an hour.
+# with sudo. OpenGL, for the lists that shaders make: those of the other APIs are compared with them, and those of random
+# scenes with exact arithmetic. Vulkan under its validation layer, WebGPU by its two implementations (Chromium's Dawn and
+# Firefox's wgpu, with their compilers Tint and naga), Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine.
+# Installs what is missing; what can't be had is skipped, and the summary says so. Takes about half an hour.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -102,6 +102,13 @@ if have "OpenGL, lists" g++ libepoxy-dev libegl1 libgl1-mesa-dri; then
         examples/tiled_forward/gl_program.cpp -lepoxy
     run "OpenGL, lists" env GALLIVM_PERF=nopt "$out/run_cull_gl" 430
     keep_bytes OpenGL
+fi
+
+if have "OpenGL, random scenes" g++ libepoxy-dev libegl1 libgl1-mesa-dri libboost-dev libgmp-dev libglm-dev; then
+    echo "$me: building the hunt"
+    build g++ cull_hunt.cpp run_cull_hunt -DLIGHTBIN_NO_SIMD -Iexamples/tiled_forward bench/gpu/device.cpp \
+        examples/tiled_forward/gl_context.cpp examples/tiled_forward/gl_program.cpp -lepoxy -lgmp
+    run "OpenGL, random scenes" env GALLIVM_PERF=nopt "$out/run_cull_hunt" 10000
 fi
 
 if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers; then

@@ -377,5 +377,7 @@ int main(int count, char** arguments) {
         tallies[kind].print(std::string(kind & 4 ? "spots" : "spheres") + (kind & 2 ? ", clusters" : ", tiles") +
                             (kind & 1 ? ", depth test" : ""));
     all.print("all");
+    std::printf("%zu scenes, %zu entries of the Binner, %zu missed, %zu faults\n", all.scenes, all.entries, all.missed,
+                all.faults);
     return all.scenes > 0 && all.faults == 0 ? 0 : 1;
 }
