@@ -5,9 +5,9 @@
 // cull_hunt SCENES [FIRST STEP]   every STEP-th scene below SCENES, from FIRST on. Scenes are made from their numbers:
 //                                 `cull_hunt 8 7 1` makes scene 7 alone.
 //
-// An entry of the Binner that the GPU lacks must be one of a light that does not reach the cell. Of the entries that only
-// the GPU has, up to 100 a scene are asked about: a light that reaches the cell was missed by the Binner. Prints a table,
-// whose columns are the members of HuntTally; the exit status is 1 if there are faults.
+// An entry of the Binner that the GPU lacks must be one of a light that does not reach the cell. Of the entries that
+// only the GPU has, up to 100 a scene are asked about: a light that reaches the cell was missed by the Binner. Prints a
+// table, whose columns are the members of HuntTally; the exit status is 1 if there are faults.
 #include "cull_cases.hpp"
 
 #include "../../bench/exact/truth.hpp"
@@ -90,19 +90,6 @@ lightbin::Slices random_slices(const Aim& aim, const std::vector<Light>& balls, 
     return slices_at_ends(aim, balls, random);
 }
 
-std::vector<lightbin::Sphere> as_spheres(const std::vector<SpotLight>& lights) {
-    std::vector<lightbin::Sphere> spheres;
-    for (const SpotLight& s : lights)
-        spheres.push_back({s.ball.x, s.ball.y, s.ball.z, s.ball.w});
-    return spheres;
-}
-std::vector<lightbin::Spot> as_spots(const std::vector<SpotLight>& lights) {
-    std::vector<lightbin::Spot> spots;
-    for (const SpotLight& s : lights)
-        spots.push_back({s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine});
-    return spots;
-}
-
 HuntScene random_scene(std::uint64_t number) {
     Random random(seed_of("cull_hunt") + number * 0x9e3779b97f4a7c15u);
     lightbin::CullOptions options;
@@ -119,7 +106,7 @@ HuntScene random_scene(std::uint64_t number) {
     options.world_space = random.chance(0.4);
     options.ids = random.chance(0.5) ? lightbin::IdWidth::u16 : lightbin::IdWidth::u32;
     const bool spots = options.kind == lightbin::CullKind::spot;
-    options.lights_at.stride = spots ? 8 : 4;
+    options.lights_at.stride = sizeof(SpotLight) / 4;
     const auto count = static_cast<std::size_t>(many ? random.integer(1000, 2500) : random.integer(1, 60));
     std::vector<SpotLight> lights = random_lights(camera, spots, count, random);
 
@@ -141,7 +128,7 @@ HuntScene random_scene(std::uint64_t number) {
         lights = into_world(lights, *scene.matrix);
         scene.made.to_view = lightbin::detail::to_matrix(scene.matrix->m);
     }
-    scene.made.lights = spots ? words_of(as_spots(lights)) : words_of(as_spheres(lights));
+    scene.made.lights = words_of(lights);
     scene.made.room = static_cast<std::uint32_t>(count * view.tile_count()) *
                       static_cast<std::uint32_t>(clusters ? scene.slices.count() : 1);
     scene.made.z_bounds = cull_depths({view, {}, scene.slices}, scene.bounds, options.depth_test, options.slicing,
@@ -186,18 +173,25 @@ BuiltLists binner_lists(const HuntScene& scene, lightbin::LightCounts& counts) {
     BuiltScene built{scene.made.view, {}, scene.slices};
     if (scene.has_bounds()) built.bounds.max = scene.bounds[1];
     if (scene.has_bounds() && !scene.made.options.max_only) built.bounds.min = scene.bounds[0];
-    const auto of = [&](const auto& lights) {
-        auto source = lightbin::world_space(lights, scene.matrix ? scene.matrix->m : identity);
+    const auto of = [&](const auto& to_light) {
+        auto source = lightbin::world_space(scene.lights, scene.matrix ? scene.matrix->m : identity, to_light);
         if (!scene.matrix) source.to_view.reset();
         using lightbin::Options;
         constexpr Options clusters{.slicing = Slicing::clusters}, tested{.depth_test = true},
             both{.depth_test = true, .slicing = Slicing::clusters};
         const bool depth_test = scene.made.options.depth_test;
         if (scene.clusters())
-            return depth_test ? binned<both, true>(built, source, counts) : binned<clusters, true>(built, source, counts);
+            return depth_test ? binned<both, true>(built, source, counts)
+                              : binned<clusters, true>(built, source, counts);
         return depth_test ? binned<tested>(built, source, counts) : binned<Options{}>(built, source, counts);
     };
-    return scene.spots() ? of(as_spots(scene.lights)) : of(as_spheres(scene.lights));
+    const auto sphere = [](const SpotLight& s) {
+        return lightbin::Sphere{s.ball.x, s.ball.y, s.ball.z, s.ball.w};
+    };
+    const auto spot = [](const SpotLight& s) {
+        return lightbin::Spot{s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine};
+    };
+    return scene.spots() ? of(spot) : of(sphere);
 }
 
 /// Decides by exact arithmetic whether a scene's lights reach its cells.
@@ -226,7 +220,7 @@ public:
         const float low = bound(0, tile), high = bound(1, tile);
         if (low > high || low == HUGE_VALF || high == -HUGE_VALF) return false;
         float min = low, max = high;
-        if (scene_.clusters()) {  // whose slice is a part of the cell or, if it is not within the bounds, nothing is
+        if (scene_.clusters()) {  // the cell is that of the slice, or nothing if the slice does not meet the bounds
             const auto boundaries = scene_.slices.boundaries();
             min = slice > 0 ? boundaries[slice - 1] : -HUGE_VALF;
             max = slice < boundaries.size() ? boundaries[slice] : HUGE_VALF;
@@ -289,18 +283,20 @@ struct HuntTally {
     std::size_t everywhere = 0;  ///< those of lights that it lists everywhere; they are not counted in `more`
     std::size_t asked = 0;       ///< entries of which exact arithmetic was asked whether the light reaches the cell
     std::size_t reach = 0;       ///< entries that only the GPU has although the light reaches: the Binner misses it
-    std::size_t faults = 0;      ///< all that were missed or left open, and grids with wrong ranges or totals
+    std::size_t open = 0;        ///< entries of which exact arithmetic left open whether the light reaches the cell
+    std::size_t faults = 0;      ///< missed entries, open ones of the Binner, and grids with wrong ranges or totals
 
     void add(const HuntTally& other) {
         using Tally = HuntTally;
         for (const auto member : {&Tally::scenes, &Tally::entries, &Tally::missed, &Tally::lacked, &Tally::lacking,
-                                  &Tally::more, &Tally::everywhere, &Tally::asked, &Tally::reach, &Tally::faults})
+                                  &Tally::more, &Tally::everywhere, &Tally::asked, &Tally::reach, &Tally::open,
+                                  &Tally::faults})
             this->*member += other.*member;
     }
     void print(const std::string& name) const {
-        const double percent = 100.0 * static_cast<double>(more) / static_cast<double>(std::max<std::size_t>(entries, 1));
-        std::printf("%-29s %6zu %9zu %6zu %7zu %7zu %8zu %7.3f %10zu %7zu %5zu %6zu\n", name.c_str(), scenes, entries,
-                    missed, lacked, lacking, more, percent, everywhere, asked, reach, faults);
+        const double percent = entries == 0 ? 0 : 100.0 * static_cast<double>(more) / static_cast<double>(entries);
+        std::printf("%-29s %6zu %9zu %6zu %7zu %7zu %8zu %7.3f %10zu %7zu %5zu %4zu %6zu\n", name.c_str(), scenes,
+                    entries, missed, lacked, lacking, more, percent, everywhere, asked, reach, open, faults);
     }
 };
 
@@ -319,14 +315,16 @@ HuntTally hunt(GpuDevice& device, const HuntScene& scene, const std::string& nam
         return tally;
     }
     Referee referee(scene);
-    // Asks about an entry that one side has; those of lights that reach the cell are counted in `missed`.
-    const auto ask = [&](std::size_t cell, std::size_t light, std::size_t& missed, const char* who) {
-        ++tally.asked;
+    // Asks about an entry that one side alone has; those of lights that reach the cell are counted in `missed`.
+    const auto ask = [&](std::size_t cell, std::size_t light, bool gpu_has, std::size_t& missed) {
         const std::optional<bool> reaches = referee.reaches(cell, light);
-        if (reaches == false) return;
+        ++tally.asked;
+        tally.open += !reaches;
         missed += reaches == true;
+        if (reaches == false || (!reaches && gpu_has)) return;
         fault("cell " + std::to_string(cell) + ", light " + std::to_string(light) + " " + text(scene.lights[light]) +
-              (reaches ? " is missed by " : " is open and lacked by ") + who);
+              (reaches ? " reaches, but is only in the list of the " : " is open, and only in the list of the ") +
+              (gpu_has ? "GPU" : "Binner"));
     };
     struct Pair {
         std::size_t cell, light;
@@ -349,9 +347,9 @@ HuntTally hunt(GpuDevice& device, const HuntScene& scene, const std::string& nam
                 more.push_back({cell, light});
     }
     for (const Pair& pair : lacked)
-        ask(pair.cell, pair.light, tally.missed, "the GPU");
+        ask(pair.cell, pair.light, false, tally.missed);
     for (std::size_t i = 0; i < more.size(); i += more.size() / 100 + 1)
-        ask(more[i].cell, more[i].light, tally.reach, "the Binner");
+        ask(more[i].cell, more[i].light, true, tally.reach);
     tally.lacked = lacked.size() - tally.missed;
     tally.lacking = tally.lacked > 0;
     tally.more = more.size();
@@ -371,8 +369,8 @@ int main(int count, char** arguments) {
         tallies[4 * scene.spots() + 2 * scene.clusters() + scene.made.options.depth_test].add(tally);
         all.add(tally);
     }
-    std::printf("%-29s %6s %9s %6s %7s %7s %8s %7s %10s %7s %5s %6s\n", "", "scenes", "entries", "missed", "lacked",
-                "lacking", "more", "%", "everywhere", "asked", "reach", "faults");
+    std::printf("%-29s %6s %9s %6s %7s %7s %8s %7s %10s %7s %5s %4s %6s\n", "", "scenes", "entries", "missed", "lacked",
+                "lacking", "more", "%", "everywhere", "asked", "reach", "open", "faults");
     for (unsigned kind = 0; kind < 8; ++kind)
         tallies[kind].print(std::string(kind & 4 ? "spots" : "spheres") + (kind & 2 ? ", clusters" : ", tiles") +
                             (kind & 1 ? ", depth test" : ""));

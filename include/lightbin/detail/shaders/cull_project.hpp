@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The pass project: finds each light's rectangle of tiles, its slices, and the mask blocks that it meets.
 //
-// The lists must hold the Binner's on every device that keeps the arithmetic that GLSL (section 4.7.1), SPIR-V for
-// Vulkan and WGSL (section 15.7) state: sums and products correctly rounded, but in which direction is open, so with
-// an error of up to 2u of the result, where u = 2^-24; quotients within 2.5 units in the last place, 5u; roots
-// computed as 1 / inversesqrt(x), 9u. Denormal numbers may be flushed to zero, and NaN and infinity may not be
-// supported: so they are recognised in the input by their bits, and are never computed.
+// The lists must have every light that reaches a cell, on every device that keeps the arithmetic that GLSL (section
+// 4.7.1), SPIR-V for Vulkan and WGSL (section 15.7) state: so each bound here is made to hold the Binner's. Sums and
+// products are correctly rounded, but in which direction is open, so with an error of up to 2u of the result, where u =
+// 2^-24; quotients within 2.5 units in the last place, 5u; roots computed as 1 / inversesqrt(x), 9u. Denormal numbers
+// may be flushed to zero, and NaN and infinity may not be supported: so they are recognised in the input by their bits,
+// and are never computed.
 #pragma once
 
 #include <lightbin/detail/shaders/cull_common.hpp>
