@@ -20,27 +20,6 @@ BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::Light
     return {{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}};
 }
 
-/// The content of the buffer `z_bounds`.
-inline std::vector<float> cull_depths(const BuiltScene& scene,
-                                      const std::array<std::vector<float>, 2>& bounds, bool depth_test,
-                                      lightbin::Slicing slicing, bool bounded = false) {
-    std::vector<float> depths;
-    const auto add_bounds = [&] {
-        for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
-            depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
-    };
-    if (slicing == lightbin::Slicing::clusters)
-        for (const lightbin::ShaderEdges& slab : lightbin::shader_slabs(scene.slices))
-            depths.insert(depths.end(), {slab.low, slab.high});
-    else
-        add_bounds();
-    if (depth_test || bounded)
-        for (const lightbin::ShaderEdges& edge : lightbin::shader_edges(scene.view))
-            depths.insert(depths.end(), {edge.low, edge.high});
-    if (bounded) add_bounds();
-    return depths;
-}
-
 /// Options of a grid, for both the Binner and the shaders.
 struct CullWay {
     bool depth_test = false;
@@ -382,6 +361,29 @@ private:
         return bounds;
     }
 
+public:
+    /// The content of the buffer `z_bounds`.
+    static std::vector<float> cull_depths(const BuiltScene& scene,
+                                          const std::array<std::vector<float>, 2>& bounds, bool depth_test,
+                                          lightbin::Slicing slicing, bool bounded = false) {
+        std::vector<float> depths;
+        const auto add_bounds = [&] {
+            for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
+                depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
+        };
+        if (slicing == lightbin::Slicing::clusters)
+            for (const lightbin::ShaderEdges& slab : lightbin::shader_slabs(scene.slices))
+                depths.insert(depths.end(), {slab.low, slab.high});
+        else
+            add_bounds();
+        if (depth_test || bounded)
+            for (const lightbin::ShaderEdges& edge : lightbin::shader_edges(scene.view))
+                depths.insert(depths.end(), {edge.low, edge.high});
+        if (bounded) add_bounds();
+        return depths;
+    }
+
+private:
     lightbin::ShaderLanguage language_;
     Share share_;
     std::size_t turn_ = 0, made_ = 0;

@@ -131,8 +131,8 @@ HuntScene random_scene(std::uint64_t number) {
     scene.made.lights = words_of(lights);
     scene.made.room = static_cast<std::uint32_t>(count * view.tile_count()) *
                       static_cast<std::uint32_t>(clusters ? scene.slices.count() : 1);
-    scene.made.z_bounds = cull_depths({view, {}, scene.slices}, scene.bounds, options.depth_test, options.slicing,
-                                      options.bounded);
+    scene.made.z_bounds = CullTests::cull_depths({view, {}, scene.slices}, scene.bounds, options.depth_test,
+                                                 options.slicing, options.bounded);
     scene.lights = std::move(lights);
     return scene;
 }

@@ -40,9 +40,9 @@ vec2 $depths_of(uint cell) {
 }
 
 /// Adds `meets_half_space`, which tells whether the box around a cell has a point p with  n.p <= most:  whether the
-/// least n.p of the box is at most `most`. The Binner tests the cell itself, so of the spots that it tests by half
-/// spaces it lists none that this test excludes. Its n differs from this one by less than 2^-14 in each coordinate, see
-/// add_half_spaces(). So `least` subtracts 2^-14 of the box's greatest coordinate.
+/// least n.p of the box is at most `most`. The Binner tests the cell itself, so it lists no light that this test
+/// excludes. Its n differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(). So `least`
+/// subtracts 2^-14 of the box's greatest coordinate.
 inline void add_half_space(ShaderWriter& writer) {
     writer.add(R"(
 float $least(float n, vec2 ends) {
