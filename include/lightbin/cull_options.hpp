@@ -31,24 +31,34 @@ constexpr const char* to_string(CullPass value) {
     return detail::name_at(value, {"project", "count", "sums", "offsets", "fill", "masks"});
 }
 
-/// What the lights in the buffer are. Boxes are binned on the CPU.
+/// What the lights in the buffer are.
 enum class CullKind : std::uint8_t {
     sphere,
     spot,  ///< those with a half angle beyond 138 degrees, such as Spot::whole() makes, count as whole spheres
+    box,
+    /// Spheres, behind them spots, and behind them boxes, as many of each as CullCapacity has room for. Ids number them
+    /// in this order, as they do with lights() on the CPU.
+    mixed,
 };
 
 constexpr const char* to_string(CullKind value) {
-    return detail::name_at(value, {"sphere", "spot"});
+    return detail::name_at(value, {"sphere", "spot", "box", "mixed"});
 }
 
 /// Where the numbers of a light lie in the caller's buffer, in words of 32 bits. The defaults are those of an array of
-/// Sphere, or of vec4s. An array of Spot has the stride 8.
+/// Sphere, or of vec4s, and with CullKind::mixed those of arrays of Sphere, Spot and Box. An array of Spot alone has
+/// the stride 8, one of Box 17.
 struct CullLayout {
     std::uint32_t stride = 4;  ///< from one light to the next
     std::uint32_t centre = 0;  ///< x, y and z, side by side
     std::uint32_t radius = 3;
-    std::uint32_t axis = 4;    ///< spots: x, y and z of the axis, side by side
-    std::uint32_t cosine = 7;  ///< spots: the cosine of the half angle
+    std::uint32_t axis = 4;         ///< spots: x, y and z of the axis, side by side
+    std::uint32_t cosine = 7;       ///< spots: the cosine of the half angle
+    std::uint32_t box_centre = 4;   ///< boxes: x, y and z, side by side
+    std::uint32_t half_axes = 7;    ///< boxes: the nine numbers of the half axes, side by side
+    std::uint32_t taper = 16;       ///< boxes
+    std::uint32_t spot_stride = 8;  ///< CullKind::mixed: from one spot to the next; `stride` is that of spheres
+    std::uint32_t box_stride = 17;  ///< CullKind::mixed: from one box to the next
 };
 
 /// What cull_shader() generates. All passes of a build need the same options, those of CullPass apart. Every device
@@ -61,7 +71,9 @@ struct CullOptions {
     CullLayout lights_at = {};
     bool world_space = false;      ///< the lights are in world space, and are transformed to view space
     bool count_in_buffer = false;  ///< reads the number of lights from the buffer `light_count`
-    std::uint32_t count_at = 0;    ///< with count_in_buffer: the index of the word that holds the number
+    /// With count_in_buffer: the index of the word that holds the number, with CullKind::mixed that of spheres, behind
+    /// which are those of spots and boxes.
+    std::uint32_t count_at = 0;
 
     IdWidth ids = IdWidth::u32;              ///< u32, or u16: then each word of `lists` holds two ids
     bool depth_test = false;
@@ -80,8 +92,10 @@ struct CullOptions {
 
 /// The numbers of lights and of list entries that the caller's buffers have room for.
 struct CullCapacity {
-    std::uint32_t lights = 0;   ///< with count_in_buffer the greatest number of lights, else the number of lights
+    /// With count_in_buffer the greatest number of lights, else the number of lights; of spheres with CullKind::mixed.
+    std::uint32_t lights = 0;
     std::uint32_t entries = 0;  ///< ids that fit in `lists`
+    std::uint32_t spots = 0, boxes = 0;  ///< the same as `lights` of spots and boxes, with CullKind::mixed
 };
 
 /// The values of the constants. The uniform block `grid` has this layout, a vec4 or uvec4 a line.
@@ -89,9 +103,9 @@ struct CullConstants {
     std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters, else 1; CullCapacity::entries
     /// Columns and rows of mask blocks; log2 of the tiles along a block's side, and of the slices in a block.
     std::uint32_t blocks_x, blocks_y, block_shift, slice_shift;
-    // CullCapacity::lights; the segments of lights, and the steps of 1024 lights in each. Then where arrays begin in
-    // `scratch`, in words: counts of groups of lights, masks, counts of cells, ranges of cells, and sums of ranges. The
-    // lights themselves are behind CullTotals.
+    // The lights that there is room for; the segments of lights, and the steps of 1024 lights in each. Then where
+    // arrays begin in `scratch`, in words: counts of groups of lights, masks, counts of cells, ranges of cells, and
+    // sums of ranges. The lights themselves are behind CullTotals.
     std::uint32_t lights, segments, steps, groups;
     std::uint32_t masks, counts, ranges, sums;
     // The image axes, in tiles, as in ImageAxis. The margins are those of the GPU's arithmetic.
@@ -105,8 +119,10 @@ struct CullConstants {
     float column_y[3], error_at_origin;
     float column_z[3], cone_error;
     float origin_image[3], max_distance;
+    // Of CullKind::mixed: the ids of the first spot and box, and the words of the buffer `lights` where they begin.
+    std::uint32_t first_spot, first_box, spots_at, boxes_at;
 };
-static_assert(sizeof(CullConstants) == 13 * 16);  // it has no padding
+static_assert(sizeof(CullConstants) == 14 * 16);  // it has no padding
 
 /// The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535.
 struct CullGroups {
@@ -124,9 +140,10 @@ struct CullBytes {
 /// What the passes leave in the first words of `scratch`.
 struct CullTotals {
     std::uint32_t entries;   ///< of the complete lists, at most 2^32 - 1; undefined if there are masks
-    std::uint32_t rejected;  ///< lights left out as bad input: see Sphere and Spot
+    std::uint32_t rejected;  ///< lights left out as bad input: see Sphere, Spot and Box
     std::uint32_t visible;   ///< lights in view
-    std::uint32_t lights;    ///< how many were given: with count_in_buffer, it may exceed CullCapacity::lights
+    /// How many were given, with CullKind::mixed of all kinds: with count_in_buffer, it may exceed CullCapacity.
+    std::uint32_t lights;
 };
 static_assert(sizeof(CullTotals) == 16);
 

@@ -839,10 +839,14 @@ typedef enum lightbin_cull_pass {
     LIGHTBIN_CULL_MASKS = 5    /* in place of count to fill: writes masks of the columns and rows of tiles */
 } lightbin_cull_pass;
 
-/* The kind of lights that lightbin_cull_shader() bins on the GPU. Boxes are binned on the CPU. */
+/* The kind of lights that lightbin_cull_shader() bins on the GPU. */
 typedef enum lightbin_cull_kind {
     LIGHTBIN_CULL_SPHERE = 0,
-    LIGHTBIN_CULL_SPOT = 1 /* those with a half angle beyond 138 degrees count as whole spheres */
+    LIGHTBIN_CULL_SPOT = 1, /* those with a half angle beyond 138 degrees count as whole spheres */
+    LIGHTBIN_CULL_BOX = 2,
+    /* Spheres, behind them spots, and behind them boxes, as many of each as there is room for. Ids number them in this
+     * order, as binners do. */
+    LIGHTBIN_CULL_MIXED = 3
 } lightbin_cull_kind;
 
 /* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
@@ -854,12 +858,14 @@ typedef struct lightbin_cull_options {
     int32_t pass;       /* a lightbin_cull_pass */
     int32_t kind;       /* a lightbin_cull_kind */
     /* Where the numbers of a light lie in the buffer `lights`, in words of 32 bits. stride: from one light to the next;
-     * 0: lights lie side by side, as x, y, z, radius and with spots axis x, y, z and cosine, and the next four are not
-     * read. centre and axis: x, y and z, side by side. cosine: of the half angle. */
+     * 0: lights lie side by side, as arrays of lightbin_sphere, lightbin_spot and lightbin_box, and the next four and
+     * box_centre to box_stride are not read. centre and axis: x, y and z, side by side. cosine: of the half angle. */
     uint32_t stride, centre, radius, axis, cosine;
     int32_t world_space;     /* not 0: the lights are in world space, and are transformed to view space */
     int32_t count_in_buffer; /* not 0: the number of lights is read from the buffer `light_count` */
-    uint32_t count_at;       /* with count_in_buffer: the index of the word that holds the number */
+    /* With count_in_buffer: the index of the word that holds the number; with LIGHTBIN_CULL_MIXED that of spheres,
+     * behind which are those of spots and boxes */
+    uint32_t count_at;
     int32_t ids;             /* LIGHTBIN_U32, or LIGHTBIN_U16: then each word of `lists` holds two ids */
     int32_t depth_test;      /* not 0: test lights against the boxes around cells, as binners do */
     int32_t slicing;         /* LIGHTBIN_NO_SLICING or LIGHTBIN_CLUSTERS */
@@ -870,6 +876,12 @@ typedef struct lightbin_cull_options {
     lightbin_slot lights, z_bounds, scratch, slices, tiles, light_count, lists, grid;
     /* Not 0, with clusters: the cells whose slice does not meet their tile's Z bounds list no light */
     int32_t bounded;
+    /* Where the numbers of boxes lie, as above. box_centre: x, y and z, side by side. half_axes: nine numbers, side by
+     * side. With LIGHTBIN_CULL_MIXED, `stride` is that of spheres, and the last two are those of the others. */
+    uint32_t box_centre, half_axes, taper, spot_stride, box_stride;
+    /* With LIGHTBIN_CULL_MIXED: the number of spots and of boxes, with count_in_buffer the greatest. Only
+     * lightbin_plan_cull() reads them: its argument `lights` is the number of spheres. */
+    uint32_t spots, boxes;
 } lightbin_cull_options;
 
 /* Makes the text of one pass, a whole compute shader except for `#version`, with the buffers to bind. The name of a
@@ -914,16 +926,17 @@ typedef struct lightbin_cull_plan {
 /* What the shaders of lightbin_cull_shader() leave in the first words of the buffer `scratch`. */
 typedef struct lightbin_cull_totals {
     uint32_t entries;  /* of the complete lists, at most 2^32 - 1; undefined if there are masks */
-    uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
+    uint32_t rejected; /* lights left out as bad input: see lightbin_spheres, lightbin_spots and lightbin_boxes */
     uint32_t visible;  /* lights in view */
-    uint32_t lights;   /* how many were given: with count_in_buffer, it may exceed those that there is room for */
+    /* How many were given, of all kinds: with count_in_buffer, it may exceed those that there is room for */
+    uint32_t lights;
 } lightbin_cull_totals;
 
 /* Computes the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport, the
  * tile size or the room, only the constants change. Set plan->size before.
  *
  * options   those of the texts; `pass` is not read
- * lights    the number of lights, with count_in_buffer the greatest
+ * lights    the number of lights, with count_in_buffer the greatest; with LIGHTBIN_CULL_MIXED that of spheres
  * entries   how many ids fit in `lists`
  * slices    with clusters, else null. The buffer `slices` holds what lightbin_shader_slices() writes
  * to_view   with world_space the matrix from world space to view space, else null

@@ -352,16 +352,27 @@ export type CullPass = 'project' | 'count' | 'sums' | 'offsets' | 'fill' | 'mask
 export interface CullOptions {
     language: Language;
     pass?: CullPass;
-    kind?: 'sphere' | 'spot';
+    /** mixed: spheres, behind them spots, and behind them boxes. Ids number them in this order. */
+    kind?: 'sphere' | 'spot' | 'box' | 'mixed';
     /** Where a light's numbers lie in the buffer `lights`, in words of 32 bits. Without stride, lights lie side by
-     * side: x, y, z, radius, and with spots axis and cosine. */
+     * side: x, y, z, radius, with spots axis and cosine, with boxes box centre, half axes and taper. */
     stride?: number;
     centre?: number;
     radius?: number;
     axis?: number;
     cosine?: number;
+    boxCentre?: number;
+    halfAxes?: number;
+    taper?: number;
+    /** With kind mixed; `stride` is that of spheres. */
+    spotStride?: number;
+    boxStride?: number;
+    /** With kind mixed, for planCull(): their numbers, with countInBuffer the greatest. */
+    spots?: number;
+    boxes?: number;
     worldSpace?: boolean;
-    /** The number of lights is read from word `countAt` of the buffer `light_count`. */
+    /** The number of lights is read from word `countAt` of the buffer `light_count`; with kind mixed that of spheres,
+     * and those of spots and boxes from the two words behind it. */
     countInBuffer?: boolean;
     countAt?: number;
     ids?: 'u32' | 'u16';
@@ -379,7 +390,7 @@ export interface CullOptions {
 
 /** What the buffers have room for, and what the options ask for. */
 export interface CullCapacity {
-    /** The number of lights, with countInBuffer the greatest. */
+    /** The number of lights, with countInBuffer the greatest. With kind mixed that of spheres. */
     lights: number;
     /** Ids that fit in the buffer `lists`. */
     entries: number;

@@ -595,7 +595,7 @@ static void test_cull(void) {
     options.pass = 6;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.pass"));
     options.pass = LIGHTBIN_CULL_FILL;
-    options.kind = 2;
+    options.kind = 4;
     CHECK(refuses(lightbin_cull_shader(&options, &shader), LIGHTBIN_NOT_A_VALUE, "options.kind"));
     options.kind = LIGHTBIN_CULL_SPOT;
     options.ids = 3;
@@ -621,6 +621,13 @@ static void test_cull(void) {
     CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, &to_view, &plan), LIGHTBIN_NOT_READ,
                   "to_view"));
     CHECK(lightbin_plan_cull(view, &options, 65537, 9, NULL, NULL, &plan).error == LIGHTBIN_TOO_MANY_LIGHTS);
+    options.kind = LIGHTBIN_CULL_MIXED;
+    options.spots = options.boxes = 30000;
+    CHECK(lightbin_plan_cull(view, &options, 5537, 9, NULL, NULL, &plan).error == LIGHTBIN_TOO_MANY_LIGHTS);
+    options.ids = LIGHTBIN_U32;
+    CHECK(lightbin_plan_cull(view, &options, 0xffffffffu, 9, NULL, NULL, &plan).error == LIGHTBIN_TOO_MANY_LIGHTS);
+    options.ids = LIGHTBIN_U16;
+    options.kind = LIGHTBIN_CULL_SPOT;
     options.slicing = LIGHTBIN_Z_BINS;
     CHECK(lightbin_plan_cull(view, &options, 9, 9, slices, NULL, &plan).error == LIGHTBIN_NO_SUCH_SLICING_SHADER);
     options.slicing = LIGHTBIN_CLUSTERS;

@@ -574,29 +574,33 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
     const auto slices = make_slices();
     const lightbin_matrix to_view = {view_matrix, nullptr, LIGHTBIN_COLUMN_MAJOR, 0};
     const Matrix cpp_to_view = matrix(view_matrix, MatrixLayout::column_major);
-    for (int kind = LIGHTBIN_CULL_SPHERE; kind <= LIGHTBIN_CULL_SPOT; ++kind)
+    for (int kind = LIGHTBIN_CULL_SPHERE; kind <= LIGHTBIN_CULL_MIXED; ++kind)
         for (const bool all : {false, true}) {
             auto options = sized<lightbin_cull_options>();
             CullOptions cpp = {.kind = static_cast<CullKind>(kind)};
             options.kind = kind;
             if (kind == LIGHTBIN_CULL_SPOT) cpp.lights_at.stride = 8;
+            if (kind == LIGHTBIN_CULL_BOX) cpp.lights_at.stride = 17;
+            options.spots = 700, options.boxes = 80;
             if (all) {
                 options.language = LIGHTBIN_WGSL, options.prefix = "mine_", options.stride = 20, options.centre = 3;
+                options.box_centre = 21, options.half_axes = 24, options.taper = 33, options.spot_stride = 35;
+                options.box_stride = 40;
                 options.radius = 9, options.axis = 11, options.cosine = 17, options.world_space = 1;
                 options.count_in_buffer = 1, options.count_at = 7, options.ids = LIGHTBIN_U16, options.depth_test = 1;
-                options.slicing = kind, options.max_only = kind == 0, options.orthographic = 1;
+                options.slicing = kind % 2, options.max_only = kind == 0, options.orthographic = 1;
                 options.slots_given = 1, options.lights = {9, 2}, options.z_bounds = {8, 2};
                 options.scratch = {7, 2}, options.slices = {6, 2}, options.tiles = {5, 1};
                 options.light_count = {4, 1}, options.lists = {3, 1}, options.grid = {2, 0};
                 cpp = {.language = ShaderLanguage::wgsl,
                        .kind = cpp.kind,
-                       .lights_at = {20, 3, 9, 11, 17},
+                       .lights_at = {20, 3, 9, 11, 17, 21, 24, 33, 35, 40},
                        .world_space = true,
                        .count_in_buffer = true,
                        .count_at = 7,
                        .ids = IdWidth::u16,
                        .depth_test = true,
-                       .slicing = static_cast<Slicing>(kind),
+                       .slicing = static_cast<Slicing>(kind % 2),
                        .max_only = kind == 0,
                        .orthographic = true,
                        .lights = {9, 2},
@@ -618,7 +622,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
             const lightbin_result result =
                 lightbin_plan_cull(view.get(), &options, 60'000, 5000, sliced ? slices.get() : nullptr,
                                    all ? &to_view : nullptr, &plan);
-            const auto expected = plan_cull(cpp_view, cpp, {60'000, 5000}, sliced ? &cpp_slices : nullptr,
+            const auto expected = plan_cull(cpp_view, cpp, {60'000, 5000, 700, 80}, sliced ? &cpp_slices : nullptr,
                                             all ? &cpp_to_view : nullptr);
             REQUIRE(expected);
             works(result);

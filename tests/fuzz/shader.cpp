@@ -404,9 +404,9 @@ void check_plan(const CullPlan& plan, const View& view, const CullOptions& optio
     const auto columns = static_cast<std::uint32_t>(view.tiles_x()),
                rows = static_cast<std::uint32_t>(view.tiles_y());
     holds(made.tiles_x == columns && made.tiles_y == rows && made.slices == slices &&
-              made.lights == room.lights && made.entries == room.entries,
+              made.lights == room.lights + room.spots + room.boxes && made.entries == room.entries,
           "a plan of something else");
-    const std::uint64_t cells = std::uint64_t{columns} * rows * slices, lights = room.lights;
+    const std::uint64_t cells = std::uint64_t{columns} * rows * slices, lights = made.lights;
     const auto sized = [&](std::uint64_t bytes, std::uint64_t least) {
         holds(bytes % 4 == 0 && bytes >= 16 && bytes >= least && bytes < least + 20,
               "a buffer of another size");
@@ -456,7 +456,10 @@ void fuzz_plan(Bytes& bytes, CullOptions options) {
     const auto view = View::from_projection(options.orthographic ? flat : perspective, {width, height},
                                             {.tile_size = static_cast<int>(1 + bytes.byte())});
     if (!view) return;
-    const CullCapacity room = {take_size(bytes), take_size(bytes)};
+    CullCapacity room = {take_size(bytes), take_size(bytes)};
+    const bool mixed = options.kind == CullKind::mixed;
+    if (mixed) room.spots = take_size(bytes), room.boxes = take_size(bytes);
+    const std::uint64_t all_lights = std::uint64_t{room.lights} + room.spots + room.boxes;
     const bool sliced = options.slicing != Slicing::none;
     std::uint32_t count = 1;
     if (sliced) count = 1 + take_size(bytes) % 70'000;
@@ -471,7 +474,7 @@ void fuzz_plan(Bytes& bytes, CullOptions options) {
 
     std::set<ErrorCode> reasons;
     if (count > 65535) reasons.insert(ErrorCode::too_many_slices);
-    if (options.ids == IdWidth::u16 && room.lights > 65536) reasons.insert(ErrorCode::too_many_lights);
+    if (all_lights > (options.ids == IdWidth::u16 ? 65536 : 0xffffffff)) reasons.insert(ErrorCode::too_many_lights);
     const auto plan = plan_cull(*view, options, room, sliced ? &*slices : nullptr,
                                 options.world_space ? &to_view : nullptr);
     if (plan) {
@@ -506,17 +509,17 @@ void fuzz_cull(Bytes& bytes) {
               {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.tiles,
                &options.light_count, &options.lists, &options.grid},
               question);
-    options.kind = take_enum(bytes, CullKind::spot);
+    options.kind = take_enum(bytes, CullKind::mixed);
     options.ids = static_cast<IdWidth>(4u >> bytes.byte() % 3);
-    options.lights_at = {take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes),
-                         take_size(bytes)};
+    options.lights_at = {take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes),
+                         take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes)};
     options.count_at = take_size(bytes);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
     if (options.slicing == Slicing::z_bins) question.reasons.insert(ErrorCode::no_such_slicing_shader);
     question.constants_in_block = true;
-    question.constants.resize(options.world_space ? 13 : 8);
+    question.constants.resize(options.kind == CullKind::mixed ? 14 : options.world_space ? 13 : 8);
     question.wanted = buffers_of(pass, options);
     question.names = {"run"};
     const Result<ShaderText> made = cull_shader(pass, options);

@@ -147,8 +147,9 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     const wide = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120, margin: 0.02});
     for (const slicing of ['no-slicing', 'clusters']) {
         const worldSpace = slicing !== 'clusters';
-        const options = {language: 'wgsl', kind: 'spot', stride: 12, radius: 3, axis: 4, cosine: 7, worldSpace,
-                         depthTest: true, slicing};
+        const options = {language: 'wgsl', kind: worldSpace ? 'spot' : 'mixed', stride: 12, radius: 3, axis: 4,
+                         cosine: 7, boxCentre: 8, halfAxes: 11, taper: 20, spotStride: 13, boxStride: 21,
+                         spots: worldSpace ? 0 : 40, boxes: worldSpace ? 0 : 30, worldSpace, depthTest: true, slicing};
         const {bytes, constants, passes, maskPasses} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
             ...slicing !== 'no-slicing' && {slices: wide}, ...worldSpace && {viewMatrix: camera}});
         const {scratch, tiles, lists, masks} = bytes;

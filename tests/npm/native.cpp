@@ -249,8 +249,10 @@ int main(int count, char** names) {
         const lightbin_matrix to_view = {nullptr, camera, LIGHTBIN_COLUMN_MAJOR, 0};
         auto options = sized<lightbin_cull_options>();
         options.language = LIGHTBIN_WGSL;
-        options.kind = LIGHTBIN_CULL_SPOT;
+        options.kind = sliced ? LIGHTBIN_CULL_MIXED : LIGHTBIN_CULL_SPOT;
         options.stride = 12, options.radius = 3, options.axis = 4, options.cosine = 7;
+        options.box_centre = 8, options.half_axes = 11, options.taper = 20, options.spot_stride = 13;
+        options.box_stride = 21, options.spots = sliced ? 40 : 0, options.boxes = sliced ? 30 : 0;
         options.world_space = !sliced;
         options.depth_test = 1;
         options.slicing = slicing;

@@ -31,7 +31,7 @@ export async function use(gl: WebGL2RenderingContext) {
     const {passes} = await lightbin.planCull(view, {language: 'wgsl', slicing: 'clusters'}, room);
     for (const {pass} of passes) await lightbin.cullShader({language: 'wgsl', pass, slicing: 'clusters'});
     // @ts-expect-error
-    await lightbin.cullShader({language: 'wgsl', kind: 'box'});
+    await lightbin.cullShader({language: 'wgsl', kind: 'tube'});
     // @ts-expect-error
     lightbin.view({projection: [1], width: 1, height: 2, clipDepth: 'webgpu'});
     // @ts-expect-error

@@ -28,22 +28,26 @@ inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
     std::vector<CullText> every;
     for (const Slicing slicing : {Slicing::none, Slicing::clusters})
         for (const bool depth_test : {false, true})
-            for (unsigned switches = 0; switches < 128; ++switches)
+            for (unsigned switches = 0; switches < 256; ++switches)
                 for (int i = 0; i <= static_cast<int>(CullPass::masks); ++i) {
                     const auto pass = static_cast<CullPass>(i);
                     CullOptions options;
                     options.language = language;
                     options.slicing = slicing;
                     options.depth_test = depth_test;
-                    options.kind = switches & 1 ? CullKind::spot : CullKind::sphere;
+                    options.kind = static_cast<CullKind>((switches & 1) + (switches >> 7 << 1));
                     options.world_space = switches & 2;
                     options.orthographic = switches & 4;
                     options.count_in_buffer = switches & 8;
                     options.max_only = switches & 16;
                     options.ids = switches & 32 ? IdWidth::u16 : IdWidth::u32;
                     options.bounded = switches & 64;
-                    // Options of lights change the first pass only, and the format of ids the last.
-                    const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
+                    // Options of lights change the first pass only, kinds those with a depth test, and the format of
+                    // ids the last.
+                    const bool boxes = (switches & 128) != 0;  // of these, a quarter
+                    const bool same = (boxes && (switches & 48) != 0) ||
+                                      (pass != CullPass::project && (switches & 10) != 0) ||
+                                      (pass != CullPass::project && !depth_test && (switches & 129) != 0) ||
                                       (pass != CullPass::fill && (switches & 32) != 0) ||
                                       (!depth_test && (switches & 16) != 0) ||
                                       ((slicing == Slicing::none || pass == CullPass::project ||
@@ -66,6 +70,8 @@ struct CullCase {
     std::optional<lightbin::Slices> slices = {};
     std::optional<lightbin::Matrix> to_view = {};
     bool binners_margin = false;  // the margins of the image axes are the Binner's
+    std::uint32_t spots = 0, boxes = 0;   // of CullKind::mixed: as many of the `count` lights
+    std::uint32_t left_out = 0;           // with count_in_buffer and CullKind::mixed: of each kind, so many of the last
 };
 
 /// The buffers that the passes wrote. Words that they did not write are 0xeeeeeeee.
@@ -97,7 +103,9 @@ struct CulledGrid {
 
 /// Returns the capacities of a scene; if the number of lights is read from a buffer, they exceed it.
 inline lightbin::CullCapacity room_of(const CullCase& scene) {
-    return {scene.count + (scene.options.count_in_buffer ? 40 : 0), scene.room};
+    const bool mixed = scene.options.kind == lightbin::CullKind::mixed;
+    return {scene.count - scene.spots - scene.boxes + (scene.options.count_in_buffer && !mixed ? 40 : 0), scene.room,
+            scene.spots, scene.boxes};
 }
 
 inline lightbin::CullPlan plan_of(const CullCase& scene) {
@@ -136,7 +144,8 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
     data.put_constants(std::as_bytes(std::span(&plan.constants, 1)), {});
     data.put("lights", scene.lights);
     std::vector<std::uint32_t> counts(scene.options.count_at + 1, 0xffffffff);
-    counts.back() = scene.count;
+    counts.back() = scene.count - scene.spots - scene.boxes - scene.left_out;
+    counts.insert(counts.end(), {scene.spots - scene.left_out, scene.boxes - scene.left_out});
     data.put("light_count", counts);
     data.put("z_bounds", scene.z_bounds);
     if (scene.slices) data.put("slices", shader_slices(*scene.slices));
@@ -172,7 +181,7 @@ template <class Device> CulledGrid run_cull(Device& device, const CullCase& scen
     grid.lists = written["lists"];
     std::swap(written["lists"], written["masks"]);
     std::fill_n(written["scratch"].begin(), 3, 0xeeeeeeee);
-    for (std::size_t light = room_of(scene).lights; light % 64 != 0; ++light) {
+    for (std::size_t light = plan.constants.lights; light % 64 != 0; ++light) {
         const std::size_t record = 4 + light * detail::cull_record_words(scene.options);
         written["scratch"][record] = 0;
         written["scratch"][record + 1] = 0xffffffff;
@@ -241,7 +250,7 @@ CullTally compare_masks(const CullCase& scene, const CulledGrid& grid, const Lig
     lightbin::MaskBinner binner;
     const lightbin::LightMasks expected = *binner.bin(scene.view, lights);
     const int columns = scene.view.tiles_x(), rows = scene.view.tiles_y();
-    const std::size_t room = room_of(scene).lights, each = (room + 31) / 32,
+    const std::size_t room = plan_of(scene).constants.lights, each = (room + 31) / 32,
                       size = 1 + static_cast<std::size_t>(columns + 1 + rows + 32) * each;
     CullTally tally;
     tally.cases = tally.wrong = 1;

@@ -5,6 +5,8 @@
 #include "cull.hpp"
 #include "run_jobs.hpp"
 
+#include <lightbin/box.hpp>
+
 #include <type_traits>
 
 /// Returns the lists of a Binner. Clusters get Z bounds only if `bounded`.
@@ -18,6 +20,28 @@ BuiltLists binned(const BuiltScene& scene, const Lights& lights, lightbin::Light
     const auto ranges = grid.ranges();
     const auto ids = grid.ids();
     return {{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}};
+}
+
+/// Lights of CullKind::mixed.
+struct MixedLights {
+    std::vector<lightbin::Sphere> spheres;
+    std::vector<lightbin::Spot> spots;
+    std::vector<lightbin::Box> boxes;
+
+    std::size_t size() const { return spheres.size() + spots.size() + boxes.size(); }
+};
+
+/// Returns what a Binner takes: lights in view space, or in world space.
+template <class Light>
+auto source_of(const std::vector<Light>& lights, const lightbin::Matrix& to_view, bool world_space) {
+    auto source = lightbin::world_space(lights, to_view);
+    if (!world_space) source.to_view.reset();
+    return source;
+}
+inline auto source_of(const MixedLights& lights, const lightbin::Matrix& to_view, bool world_space) {
+    return lightbin::lights(source_of(lights.spheres, to_view, world_space),
+                            source_of(lights.spots, to_view, world_space),
+                            source_of(lights.boxes, to_view, world_space));
 }
 
 /// Options of a grid, for both the Binner and the shaders.
@@ -74,23 +98,50 @@ private:
                     const auto spheres = cull_lights(kind, 700, static_cast<unsigned>(kind * 10 + camera));
                     one<way>(device, spheres, camera, tile_size);
                     one<way>(device, cull_spots(spheres), camera, tile_size);
+                    one<way>(device, cull_boxes(spheres), camera, tile_size);
+                    if constexpr (way.world_space || (way.depth_test && way.slicing == lightbin::Slicing::none)) {
+                        const std::vector<lightbin::Sphere> some(spheres.begin(), spheres.begin() + 250);
+                        one<way>(device, MixedLights{some, cull_spots(some), cull_boxes(some)}, camera, tile_size);
+                    }
                 }
     }
 
     template <class Light>
     CullCase simple(const lightbin::View& view, const std::vector<Light>& lights, std::size_t room) const {
-        constexpr bool spots = std::is_same_v<Light, lightbin::Spot>;
-        CullCase made{spots ? "spots" : "spheres",
+        constexpr bool spots = std::is_same_v<Light, lightbin::Spot>, boxes = std::is_same_v<Light, lightbin::Box>;
+        CullCase made{spots ? "spots" : boxes ? "boxes" : "spheres",
                       view,
                       {},
                       words_of(lights),
                       static_cast<std::uint32_t>(lights.size()),
                       static_cast<std::uint32_t>(room)};
         made.options.language = language_;
-        made.options.kind = spots ? lightbin::CullKind::spot : lightbin::CullKind::sphere;
+        using enum lightbin::CullKind;
+        made.options.kind = spots ? spot : boxes ? box : sphere;
         made.options.lights_at.stride = sizeof(Light) / 4;
         made.options.orthographic = view.orthographic();
         return made;
+    }
+    CullCase simple(const lightbin::View& view, const MixedLights& lights, std::size_t room) const {
+        CullCase made = simple(view, lights.spheres, room);
+        made.name = "mixed";
+        made.options.kind = lightbin::CullKind::mixed;
+        made.lights = words_of(lights);
+        made.count = static_cast<std::uint32_t>(lights.size());
+        made.spots = static_cast<std::uint32_t>(lights.spots.size());
+        made.boxes = static_cast<std::uint32_t>(lights.boxes.size());
+        return made;
+    }
+    /// Returns mixed lights as words, an array behind the other, or with a number behind and before each light.
+    static std::vector<std::uint32_t> words_of(const MixedLights& lights, std::size_t more = 0) {
+        std::vector<std::uint32_t> words = words_of(lights.spheres, more);
+        for (const auto& others : {words_of(lights.spots, more), words_of(lights.boxes, more)})
+            words.insert(words.end(), others.begin(), others.end());
+        return words;
+    }
+    template <class Light>
+    static std::vector<std::uint32_t> words_of(const std::vector<Light>& lights, std::size_t more = 0) {
+        return ::words_of(lights, sizeof(Light) / 4 + more, more / 2);
     }
 
     /// Runs all passes, in every fourth case twice, which must give the same bytes. Prints their hash, to compare runs
@@ -239,8 +290,7 @@ private:
         }
     }
 
-    /// Limits how many entries ordinary lights have beyond the Binner's: 1 in 1,000 of spheres, 1 in 20 of spots, and 1
-    /// in 10 of wide spots where boxes around cells are tested.
+    /// Limits how many entries ordinary lights have beyond the Binner's: 1 in 1,000 of spheres, 1 in 50 of the others.
     template <class Device> void ordinary(Device& device) {
         using namespace lightbin;
         if (!mine()) return;
@@ -255,9 +305,12 @@ private:
             spot.cos_half_angle = number(0, 0.866f);
         }
         make_ordinary<CullWay{}>(device, "ordinary spheres", tiles, lights, 1000);
-        make_ordinary<CullWay{}>(device, "ordinary spots", tiles, cull_spots(lights), 20);
+        make_ordinary<CullWay{}>(device, "ordinary spots", tiles, cull_spots(lights), 50);
         make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary spots, clusters, depth test",
-                                                        clusters, wide, 10);
+                                                        clusters, wide, 50);
+        make_ordinary<CullWay{}>(device, "ordinary boxes", tiles, cull_boxes(lights), 50);
+        make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary boxes, clusters, depth test", clusters,
+                                                        cull_boxes(lights), 50);
     }
 
     template <CullWay way, class Device, class Light>
@@ -282,10 +335,9 @@ private:
 
     /// Makes and compares one grid. World-space lights are the view-space ones moved by the inverse of a view matrix;
     /// the Binner gets the same lights.
-    template <CullWay way, class Light, class Device>
-    void one(Device& device, const std::vector<Light>& lights, int camera, int tile_size) {
+    template <CullWay way, class Lights, class Device>
+    void one(Device& device, Lights lights, int camera, int tile_size) {
         using namespace lightbin;
-        constexpr bool spots = std::is_same_v<Light, Spot>;
         constexpr Slicing slicing = way.slicing;
         const bool counted = turn_ % 4 == 1, turned = turn_ % 5 == 2;
         BuiltScene scene{builder_view(camera, 333, 217, tile_size, false, counted ? 23 : 0, counted ? 14 : 0, turned),
@@ -295,9 +347,8 @@ private:
         if (!way.max_only) scene.bounds.min = bounds[0];
         scene.bounds.max = bounds[1];
         CullCase made = simple(scene.view, lights, 0);
-        made.lights = words_of(lights, spots ? 11 : 5, 1);
-        made.options.lights_at = {
-            .stride = spots ? 11u : 5u, .centre = 1, .radius = 4, .axis = 5, .cosine = 8};
+        made.lights = words_of(lights, 3);
+        made.options.lights_at = {made.options.lights_at.stride + 3, 1, 4, 5, 8, 5, 8, 17, 8 + 3, 17 + 3};
         made.options.depth_test = way.depth_test;
         made.options.slicing = slicing;
         made.options.max_only = way.max_only;
@@ -309,19 +360,24 @@ private:
         if (slicing != Slicing::none) made.slices = scene.slices;
         made.z_bounds = cull_depths(scene, bounds, way.depth_test, slicing, way.bounded);
         if (way.world_space) made.to_view = to_view();
+        if constexpr (std::is_same_v<Lights, MixedLights>)
+            if (made.options.count_in_buffer) {  // which leaves out some lights of each kind
+                made.left_out = 20;
+                const auto switch_off = [](auto& of) {
+                    for (std::size_t i = of.size() - 20; i < of.size(); ++i)
+                        of[i].radius = -1;
+                };
+                switch_off(lights.spheres), switch_off(lights.spots), switch_off(lights.boxes);
+            }
         LightCounts counts;
-        const auto source = [&] {
-            if constexpr (way.world_space)
-                return world_space(lights, to_view());
-            else
-                return std::span(lights);
-        }();
+        const auto source = source_of(lights, to_view(), way.world_space);
         const BuiltLists expected = binned<way.options(), way.bounded>(scene, source, counts);
         made.room = static_cast<std::uint32_t>(2 * expected.ids.size() + 30000);
         const CulledGrid grid = make(device, made);
         CullTally tally = compare_lists(grid, expected);
         tally.add(compare_masks(made, grid, source));
-        tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
+        tally.wrong += grid.totals.rejected != counts.rejected ||
+                       grid.totals.lights != lights.size() - 3 * made.left_out;
         add(made.name + (way.depth_test ? ", depth test, " : ", ") + to_string(slicing) +
                 (way.bounded ? ", bounded, camera " : ", camera ") + std::to_string(camera) + ", tile " +
                 std::to_string(scene.view.tile_size()) + (turned ? ", turned" : ""),
@@ -345,6 +401,30 @@ private:
             if (spots.size() % 38 == 7) spot.cos_half_angle = -1;
         }
         return spots;
+    }
+
+    /// Returns boxes of all shapes in and around spheres: at right angles or not, flat, tapered, cut by a ball or not.
+    static std::vector<lightbin::Box> cull_boxes(const std::vector<lightbin::Sphere>& spheres) {
+        BuilderNumbers number(78);
+        std::vector<lightbin::Box> boxes;
+        for (const lightbin::Sphere& s : spheres) {
+            lightbin::Box box = {s.x, s.y, s.z, s.radius, s.x, s.y, s.z, {}, 1};
+            for (float(&axis)[3] : box.half_axes)
+                for (float& each : axis)
+                    each = s.radius * number(-1, 1);
+            const std::size_t i = boxes.size();
+            if (i % 3 == 0) box = half_sphere(s, lightbin::WorldPoint{number(-1, 1), number(-1, 1), number(-1, 1)});
+            if (i % 3 == 1) box.radius = std::numeric_limits<float>::infinity();
+            if (i % 5 == 2) box.taper = number(0, 1) < 0.3f ? 0 : number(0, 1);
+            if (i % 7 == 3) box.half_axes[i % 2][0] = box.half_axes[i % 2][1] = box.half_axes[i % 2][2] = 0;
+            if (i % 61 == 9) std::fill_n(box.half_axes[0], 9, 0.0f);
+            if (i % 67 == 9) box.taper = i % 2 == 0 ? 1.5f : -1e-9f;
+            if (i % 71 == 9) box.half_axes[1][1] = std::numeric_limits<float>::quiet_NaN();
+            if (i % 73 == 9) box.box_y = 1e30f;
+            if (i % 79 == 9) box.x = 1e30f;
+            boxes.push_back(box);
+        }
+        return boxes;
     }
 
     static std::array<std::vector<float>, 2> cull_z_bounds(const lightbin::View& view) {

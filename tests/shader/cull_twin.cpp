@@ -5,7 +5,8 @@
 // the latter. Every rectangle must hold the one that the Binner finds. With a margin of 2^-21 instead of the shaders'
 // own, some must not.
 //
-// cull_twin [LIGHTS]   how many lights for each view, kind of light and arithmetic
+// cull_twin [LIGHTS [BOXES]]   how many lights, and how many boxes, for each view, kind of light and arithmetic
+#include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_cull.hpp>
 #include <lightbin/spot.hpp>
@@ -103,6 +104,10 @@ using vec4 = glm::vec<4, Real>;
 using glm::uvec2;
 using glm::uvec4;
 
+vec4 abs(const vec4& v) {
+    return {abs(v.x), abs(v.y), abs(v.z), abs(v.w)};
+}
+
 Real uintBitsToFloat(uint bits) {
     return Real::exact(std::bit_cast<float>(bits));
 }
@@ -186,6 +191,43 @@ public:
         return {s.x, s.y, s.z, s.radius, axis(), axis(), axis(), static_cast<float>(cosine)};
     }
 
+    /// Returns a box in or around the sphere of next(): any parallelepiped, at right angles, thin, flat, a line
+    /// segment, or a frustum; whole or cut by a ball around it, around one of its corners, or touching them.
+    Box next_box() {
+        const Sphere s = next();
+        const double size = static_cast<double>(s.radius);
+        const unsigned shape = engine_() % 8, ball = engine_() % 8;
+        double axes[3][3];
+        for (auto& axis : axes)
+            for (double& number : axis)
+                number = real(-1, 1);
+        if (shape < 5)  // the second at right angles to the first, the third to both
+            for (int i = 0; i < 2; ++i)
+                for (int k = 0; k < 3; ++k) {
+                    const int a = (k + 1) % 3, b = (k + 2) % 3;
+                    double(&of)[3] = axes[i + 1], (&first)[3] = axes[i == 0 ? 2 : 0], (&second)[3] = axes[i];
+                    of[k] = first[a] * second[b] - first[b] * second[a];
+                }
+        Box box = {s.x, s.y, s.z, s.radius, s.x, s.y, s.z, {}, 1};
+        for (unsigned i = 0; i < 3; ++i) {
+            const bool none = (shape == 0 && i > 0) || (shape == 1 && i == 2);
+            const double scale = none ? 0 : size * std::pow(2.0, real(-8, 1));
+            for (unsigned k = 0; k < 3; ++k)
+                box.half_axes[i][k] = static_cast<float>(axes[i][k] * scale);
+        }
+        if (engine_() % 4 == 0) box.taper = engine_() % 2 == 0 ? 0.0f : static_cast<float>(real(0, 1));
+        if (ball < 3) {
+            box.radius = std::numeric_limits<float>::infinity();
+        } else if (ball < 5) {  // that of its corners, or a little less
+            box = clipped_sphere(detail::sphere_of_corners(box), box);
+            box.radius *= static_cast<float>(1 + real(-1, 0.5) * std::pow(2.0, -real(0, 20)));
+        } else if (ball == 5) {
+            for (unsigned i = 0; i < 3; ++i)
+                (i == 0 ? box.box_x : i == 1 ? box.box_y : box.box_z) += box.half_axes[0][i] + box.half_axes[1][i];
+        }
+        return box;
+    }
+
 private:
     double real(double low, double high) {
         return low + (high - low) * static_cast<double>(engine_() >> 8) / 16777216.0;
@@ -219,10 +261,11 @@ void compare(const View& view, const CullOptions& options, const std::vector<Lig
     std::memcpy(p_lights.data(), made.data(), made.size() * sizeof(Light));
     constexpr uint totals = sizeof(CullTotals) / 4;  // before the records
     p_scratch.resize(totals + made.size() * 2);
+    const bool boxes = options.kind == CullKind::box;
     const auto by_text = options.kind == CullKind::spot ? spot::p_project
-                         : to_view != nullptr           ? world::p_project
-                         : options.orthographic         ? flat::p_project
-                                                        : sphere::p_project;
+                         : to_view != nullptr           ? (boxes ? world_box::p_project : world::p_project)
+                         : options.orthographic         ? (boxes ? flat_box::p_project : flat::p_project)
+                                                        : (boxes ? box::p_project : sphere::p_project);
     for (const Rounding way :
          {Rounding::nearest, Rounding::up, Rounding::down, Rounding::either, Rounding::anywhere}) {
         rounding = way;
@@ -241,14 +284,15 @@ void compare(const View& view, const CullOptions& options, const std::vector<Lig
 }  // namespace
 
 int main(int count, char** arguments) {
-    const std::size_t light_count = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : 4000;
+    const auto number = [&](int i) { return count > i ? std::strtoul(arguments[i], nullptr, 10) : 4000; };
+    const std::size_t light_count = number(1), box_count = number(2);
     constexpr float
         perspective[4][4] = {{0.974f, 0, 0, 0}, {0, 1.732f, 0, 0}, {0, 0, -1.001f, -1}, {0, 0, -0.2001f, 0}},
         off_centre[4][4] = {{2.2f, 0, 0, 0}, {0, 3.9f, 0, 0}, {0.37f, -0.81f, -1, -1}, {0, 0, -0.02f, 0}},
         flat[4][4] = {{0.02f, 0, 0, 0}, {0, -0.035f, 0, 0}, {0, 0, -0.01f, 0}, {0.1f, 0, -1, 1}},
         moved[4][4] = {{0.6f, 0, -0.8f, 0}, {0, 1, 0, 0}, {0.8f, 0, 0.6f, 0}, {13, -20, -7, 1}};
     const Matrix to_view = detail::to_matrix(moved);
-    Tally all, narrow;
+    Tally all, boxed, narrow;
     unsigned seed = 1;
     for (const auto& matrix : {perspective, off_centre, flat})
         for (const int tile_size : {32, 1}) {
@@ -260,8 +304,19 @@ int main(int count, char** arguments) {
                 spheres.push_back(make.next());
                 spots.push_back(make.next_spot());
             }
+            std::vector<Box> boxes;
+            for (std::size_t i = 0; i < box_count; ++i)
+                boxes.push_back(make.next_box());
             CullOptions options;
             options.orthographic = view.orthographic();
+            options.kind = CullKind::box;
+            compare(view, options, boxes, nullptr, 1, boxed);
+            if (!options.orthographic) {
+                options.world_space = true;
+                compare(view, options, boxes, &to_view, 1, boxed);
+                options.world_space = false;
+            }
+            options.kind = CullKind::sphere;
             compare(view, options, spheres, nullptr, 1, all);
             compare(view, options, spheres, nullptr, 0.2, narrow);
             if (options.orthographic) continue;
@@ -271,9 +326,10 @@ int main(int count, char** arguments) {
             options.world_space = true;
             compare(view, options, spheres, &to_view, 1, all);
         }
-    std::printf("%llu rectangles, %llu lost; with a margin of 2^-21 %llu of %llu are\n",
+    std::printf("%llu rectangles, %llu lost; of boxes %llu, %llu lost; with a margin of 2^-21 %llu of %llu are\n",
                 static_cast<unsigned long long>(all.rectangles), static_cast<unsigned long long>(all.lost),
+                static_cast<unsigned long long>(boxed.rectangles), static_cast<unsigned long long>(boxed.lost),
                 static_cast<unsigned long long>(narrow.lost),
                 static_cast<unsigned long long>(narrow.rectangles));
-    return all.rectangles == 0 || all.lost > 0 || narrow.lost == 0;
+    return all.rectangles == 0 || all.lost > 0 || boxed.rectangles == 0 || boxed.lost > 0 || narrow.lost == 0;
 }

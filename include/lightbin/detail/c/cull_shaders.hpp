@@ -9,9 +9,10 @@
 namespace lightbin {
 namespace c {
 
-/// Reads the pass and the options that the caller's struct describes, or returns why they are refused.
-inline lightbin_result read_cull_options(const lightbin_cull_options* options, CullPass& pass,
-                                         CullOptions& known) {
+/// Reads the pass, the options, and the spots and boxes of the room that the caller's struct describes, or returns why
+/// they are refused.
+inline lightbin_result read_cull_options(const lightbin_cull_options* options, CullPass& pass, CullOptions& known,
+                                         CullCapacity& room) {
     lightbin_cull_options given;
     lightbin_result result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
@@ -22,9 +23,12 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
                              LIGHTBIN_MEMBER(orthographic), LIGHTBIN_MEMBER(bounded));
     if (result.error != LIGHTBIN_OK) return result;
     if (given.stride != 0)
-        known.lights_at = {given.stride, given.centre, given.radius, given.axis, given.cosine};
-    else if (known.kind == CullKind::spot)
-        known.lights_at.stride = sizeof(Spot) / 4;
+        known.lights_at = {given.stride,     given.centre,    given.radius, given.axis,        given.cosine,
+                           given.box_centre, given.half_axes, given.taper,  given.spot_stride, given.box_stride};
+    else if (known.kind == CullKind::spot || known.kind == CullKind::box)
+        known.lights_at.stride = (known.kind == CullKind::spot ? sizeof(Spot) : sizeof(Box)) / 4;
+    room.spots = given.spots;
+    room.boxes = given.boxes;
     if (given.slots_given != 0)
         first_error(LIGHTBIN_MEMBER(lights), LIGHTBIN_MEMBER(z_bounds), LIGHTBIN_MEMBER(scratch),
                     LIGHTBIN_MEMBER(slices), LIGHTBIN_MEMBER(tiles), LIGHTBIN_MEMBER(light_count),
@@ -41,7 +45,8 @@ lightbin_result lightbin_cull_shader(const lightbin_cull_options* options, light
     using namespace lightbin::c;
     lightbin::CullPass pass = {};
     lightbin::CullOptions known;
-    return make_shader(shader, read_cull_options(options, pass, known),
+    lightbin::CullCapacity room;
+    return make_shader(shader, read_cull_options(options, pass, known, room),
                        [&] { return lightbin::cull_shader(pass, known); });
 }
 
@@ -51,9 +56,12 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
     using namespace lightbin::c;
     lightbin::CullPass pass = {};
     lightbin::CullOptions known;
+    lightbin::CullCapacity room;
     lightbin::Matrix matrix;
-    lightbin_result result = first_error(check_pointers({{view, "view"}}), read_cull_options(options, pass, known),
-                                         check_size(plan, "plan"));
+    lightbin_result result = first_error(check_pointers({{view, "view"}}),
+                                         read_cull_options(options, pass, known, room), check_size(plan, "plan"));
+    room.lights = lights;
+    room.entries = entries;
     if (result.error == LIGHTBIN_OK)
         result =
             first_error(check_input(known.slicing != lightbin::Slicing::none, slices, LIGHTBIN_NULL_ARGUMENT, "slices"),
@@ -61,7 +69,7 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
     if (result.error == LIGHTBIN_OK && to_view != nullptr) result = read_member(*to_view, matrix, "to_view");
     return call_if(result, [&] {
         const auto made =
-            lightbin::plan_cull(view->value, known, {lights, entries}, slices != nullptr ? &slices->value : nullptr,
+            lightbin::plan_cull(view->value, known, room, slices != nullptr ? &slices->value : nullptr,
                                 to_view != nullptr ? &matrix : nullptr);
         if (!made) return refused(made.error());
         lightbin_cull_plan filled = {};

@@ -29,20 +29,28 @@ constexpr unsigned cull_threads(CullPass pass) {
     return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
 }
 
+/// Where what the depth test reads of a light ends: its sphere, and the half spaces around a spot, or around a box, for
+/// which there are two more for its depths if there are no slices.
+inline std::uint32_t cull_half_spaces_end(CullKind kind, Slicing slicing) {
+    return kind == CullKind::sphere ? 4u : kind == CullKind::spot ? 20u : slicing == Slicing::none ? 36u : 28u;
+}
+
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
 inline std::uint32_t cull_record_words(const CullOptions& options) {
     const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
     if (!options.depth_test) return words;
-    return words + (options.kind == CullKind::spot ? 20u : 4u);
+    return words + cull_half_spaces_end(options.kind, options.slicing);
 }
 
 /// Declares the members of CullConstants, without those that lights in view space don't need, and sets the conditions
 /// and names that the texts of all passes use. In the buffer `scratch`, the words about the light with the number id
 /// begin at the word totals + id * record_words, both names of the texts.
 inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters;
+    const bool clusters = options.slicing == Slicing::clusters, mixed = options.kind == CullKind::mixed;
     writer.set({{"clusters", clusters}, {"depth_test", options.depth_test}, {"world_space", options.world_space},
-                {"spots", options.kind == CullKind::spot}, {"orthographic", options.orthographic},
+                {"spots", options.kind == CullKind::spot || mixed}, {"balls", options.kind != CullKind::box},
+                {"boxes", options.kind == CullKind::box || mixed}, {"mixed", mixed},
+                {"shapes", options.kind != CullKind::sphere}, {"orthographic", options.orthographic},
                 {"max_only", options.max_only && !clusters}, {"narrow", options.ids == IdWidth::u16},
                 {"count_in_buffer", options.count_in_buffer}, {"bounded", clusters && options.bounded}});
     writer.set("totals", std::to_string(sizeof(CullTotals) / 4) + "u");
@@ -55,9 +63,10 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
                                              {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
                                              {"vec4", "signs"},   {"vec4", "planes"}};
-    if (options.world_space)
+    if (options.world_space || mixed)
         for (const char* name : {"origin", "column_x", "column_y", "column_z", "origin_image"})
             constants.push_back({"vec4", name});
+    if (mixed) constants.push_back({"uvec4", "kinds"});
     writer.declare_constants(constants, options.grid, false, 1, true);
 }
 

@@ -39,22 +39,33 @@ vec2 $depths_of(uint cell) {
 )");
 }
 
-/// Adds `meets_half_space`, which tells whether the box around a cell has a point p with  n.p <= most:  whether the
-/// least n.p of the box is at most `most`. The Binner tests the cell itself, so it lists no light that this test
-/// excludes. Its n differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(). So `least`
-/// subtracts 2^-14 of the box's greatest coordinate.
-inline void add_half_space(ShaderWriter& writer) {
+/// Adds `meets_half_spaces`, which tells whether a cell has points of each half space  n.p <= most  around a light, by
+/// the formula of view/cell_planes.hpp. Where a radius is -1, see add_project(), there are none. The Binner's n differs
+/// from this one by less than 2^-14 in each coordinate, see add_half_spaces() and add_faces(): so 2^-14 of the cell's
+/// coordinates is subtracted, and the Binner lists no light that this test excludes.
+inline void add_half_space_test(ShaderWriter& writer) {
     writer.add(R"(
-float $least(float n, vec2 ends) {
-    vec2 far = clamp(ends, vec2(-1e18, -1e18), vec2(1e18, 1e18));
-    return min(n * far.x, n * far.y) - max(abs(far.x), abs(far.y)) * 6.1035156e-5;
-}
-
-bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
-    float least = $least(uintBitsToFloat($scratch[at]), columns);
-    least += $least(uintBitsToFloat($scratch[at + 1u]), rows);
-    least += $least(uintBitsToFloat($scratch[at + 2u]), z);
-    return least <= uintBitsToFloat($scratch[at + 3u]);
+bool $meets_half_spaces(uint at, uint end, vec2 columns, vec2 rows, vec2 z) {
+    bool met = true;
+    vec2 across = clamp(columns, vec2(-1e18, -1e18), vec2(1e18, 1e18));
+    vec2 down = clamp(rows, vec2(-1e18, -1e18), vec2(1e18, 1e18));
+    uint last = end;
+    if (uintBitsToFloat($scratch[at + 3u]) == -1.0) { last = 0u; }
+    for (uint i = 4u; i < last; i += 4u) {
+        vec3 n = vec3(uintBitsToFloat($scratch[at + i]), uintBitsToFloat($scratch[at + i + 1u]),
+                      uintBitsToFloat($scratch[at + i + 2u]));
+        float most = uintBitsToFloat($scratch[at + i + 3u]);
+        vec3 p = vec3(across.x, down.x, z.x);
+        if (n.x < 0.0) { p.x = across.y; }
+        if (n.y < 0.0) { p.y = down.y; }
+        if (n.z < 0.0) { p.z = z.y; }                                                       @if orthographic
+        if (most < 0.0) { p.z = z.y; }                                                      @if !orthographic
+        float slope = n.x * p.x + n.y * p.y + n.z - (abs(p.x) + abs(p.y) + 1.0) * 6.1035156e-5;   @if !orthographic
+        met = met && slope * p.z <= most;                                                   @if !orthographic
+        float size = abs(p.x) + abs(p.y) + abs(p.z);                                        @if orthographic
+        met = met && n.x * p.x + n.y * p.y + n.z * p.z - size * 6.1035156e-5 <= most;       @if orthographic
+    }
+    return met;
 }
 )");
 }
@@ -66,7 +77,7 @@ bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
 /// of side and depth, and one that a GPU computes within 2u, so 2^-20 = 16u outward is more than enough. The
 /// distances, each a difference, have a relative error of 2u, the sum of their squares of 10u, the Binner's of 5u;
 /// 2^-18 of the squared radius = 64u is more. 2^-80 is for squares that are flushed to zero.
-inline void add_cell_box(ShaderWriter& writer, const CullOptions& options) {
+inline void add_cell_box(ShaderWriter& writer) {
     writer.add(R"(
 vec2 $across(vec2 sides, vec2 z) {
     return sides;                                                                                   @if orthographic
@@ -75,7 +86,6 @@ vec2 $across(vec2 sides, vec2 z) {
     return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);    @if !orthographic
 }
 )");
-    if (options.kind == CullKind::spot) add_half_space(writer);
     writer.add(R"(
 float $apart(float at, vec2 ends) {
     return max(max(ends.x - at, at - ends.y), 0.0);
@@ -87,9 +97,6 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
     float y = $apart(uintBitsToFloat($scratch[at + 1u]), rows);
     float d = $apart(uintBitsToFloat($scratch[at + 2u]), z);
     bool met = radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
-    if (met && radius >= 0.0) {                                                                             @if spots
-        for (uint i = 4u; i < 20u; i += 4u) { met = met && $meets_half_space(at + i, columns, rows, z); }   @if spots
-    }                                                                                                       @if spots
     return met;
 }
 )");
@@ -228,13 +235,15 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
         writer.declare_shared("any_drawn", 1, false);
     }
     if (options.depth_test || bounded) add_cell_depths(writer);
-    if (options.depth_test) add_cell_box(writer, options);
+    if (options.depth_test) add_cell_box(writer);
+    if (options.depth_test && options.kind != CullKind::sphere) add_half_space_test(writer);
     add_tiles_met(writer);
     add_stage(writer);
     if (fill) {
         add_saturated_sum(writer);
         add_store_id(writer);
     }
+    writer.set("half_spaces_end", std::to_string(cull_half_spaces_end(options.kind, options.slicing)) + "u");
     writer.set("tested_record", "@totals + id * @record_words + @tested");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
     // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as slices_of() widens
@@ -267,11 +276,15 @@ void $run(uvec2 group, uint thread) {
     z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, @least_depth), $planes.z));   @if depth_test
     vec2 columns = vec2(0.0, 0.0);                                          @if depth_test
     vec2 rows = vec2(0.0, 0.0);                                             @if depth_test
+    vec2 x_sides = columns;                                                 @if depth_test shapes
+    vec2 y_sides = columns;                                                 @if depth_test shapes
     if (drawn) {                                                            @if depth_test
         uint sides = $grid.x * $grid.y;                                     @if depth_test !clusters
         uint sides = $grid.z;                                               @if depth_test clusters
         columns = $across($z_bounds[sides + tile.x], z);                    @if depth_test
         rows = $across($z_bounds[sides + $grid.x + tile.y], z);             @if depth_test
+        x_sides = $z_bounds[sides + tile.x];                                @if depth_test shapes
+        y_sides = $z_bounds[sides + $grid.x + tile.y];                      @if depth_test shapes
     }                                                                       @if depth_test
     if (inside) {                                                           @if bounded
         vec2 slab = $depths_of(slice);                                      @if bounded
@@ -308,6 +321,11 @@ void $run(uvec2 group, uint thread) {
                 uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);              @if each_light
                 met &= met - 1u;                                            @if each_light
                 if (!$meets_box(@tested_record, columns, rows, z)) { continue; }        @if depth_test
+                uint end = @half_spaces_end;                                            @if depth_test shapes !mixed
+                uint end = 4u;                                                          @if depth_test mixed
+                if (id >= $kinds.x) { end = 20u; }                                      @if depth_test mixed
+                if (id >= $kinds.y) { end = @half_spaces_end; }                         @if depth_test mixed
+                if (!$meets_half_spaces(@tested_record, end, x_sides, y_sides, z)) { continue; }   @if depth_test shapes
                 count += 1u;                                                @if each_light !fill
                 $store_id(at, id);                                          @if fill
                 at = $sum(at, 1u);                                          @if fill

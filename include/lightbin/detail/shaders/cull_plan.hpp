@@ -114,15 +114,23 @@ inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, 
     LIGHTBIN_ASSERT((slices != nullptr) == clusters && (to_view != nullptr) == options.world_space);
     const std::uint32_t slice_count = clusters ? static_cast<std::uint32_t>(slices->count()) : 1;
     if (slice_count > cull_max_slices) return Error{ErrorCode::too_many_slices, slice_count, cull_max_slices};
-    if (options.ids == IdWidth::u16 && room.lights > 0x10000)
-        return Error{ErrorCode::too_many_lights, room.lights, 0x10000};
+    const bool mixed = options.kind == CullKind::mixed;
+    const std::uint64_t lights = std::uint64_t{room.lights} + (mixed ? std::uint64_t{room.spots} + room.boxes : 0),
+                        most_lights = options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff;
+    if (lights > most_lights) return Error{ErrorCode::too_many_lights, lights, most_lights};
     CullPlan plan;
     CullConstants& to = plan.constants;
     to.tiles_x = static_cast<std::uint32_t>(view.tiles_x());
     to.tiles_y = static_cast<std::uint32_t>(view.tiles_y());
     to.slices = slice_count;
     to.entries = room.entries;
-    to.lights = room.lights;
+    to.lights = static_cast<std::uint32_t>(lights);
+    if (mixed) {
+        to.first_spot = room.lights;
+        to.first_box = room.lights + room.spots;
+        to.spots_at = room.lights * options.lights_at.stride;
+        to.boxes_at = to.spots_at + room.spots * options.lights_at.spot_stride;
+    }
     plan_blocks(to);
     plan_camera(camera_of(view), to);
     // Slices are widened by their own margin and by 5u, how far the GPU's results and the Binner's may differ.

@@ -9,6 +9,7 @@
 // and are never computed.
 #pragma once
 
+#include <lightbin/detail/shaders/cull_boxes.hpp>
 #include <lightbin/detail/shaders/cull_common.hpp>
 #include <lightbin/detail/shaders/cull_spots.hpp>
 
@@ -32,14 +33,29 @@ inline void name_numbers(ShaderWriter& writer, const CullLayout& layout) {
     writer.set("wide", "(@cosine_word & 0x7fffffffu) > 0x3f800000u");
     writer.set("turned", "$column_x.xyz * apart.x + $column_y.xyz * apart.y + $column_z.xyz * apart.z");
     writer.set("stretched", "@radius * $origin.w");
-    writer.set("stride", std::to_string(layout.stride) + "u");
+    vector("box_middle", layout.box_centre);
+    vector("half_x", layout.half_axes);
+    vector("half_y", layout.half_axes + 3);
+    vector("half_z", layout.half_axes + 6);
+    writer.set("taper", word("taper_word", layout.taper));
+    for (const auto& [name, number] :
+         {std::pair("stride", layout.stride), std::pair("spot_stride", layout.spot_stride),
+          std::pair("box_stride", layout.box_stride), std::pair("box_centre", layout.box_centre),
+          std::pair("half_axes", layout.half_axes)})
+        writer.set(name, std::to_string(number) + "u");
 }
 
 /// Adds the function `state_of`, which returns 0 for a light that is bad input, 1 for one that counts as everywhere, as
 /// one of its numbers exceeds 2^40, 3 for one that is switched off, else 2. The bits of floats without a sign ascend
 /// with the floats: those of 2^40 are 0x53800000, of infinity 0x7f800000. Those of -1 are 0xbf800000.
 inline void add_state(ShaderWriter& writer) {
+    writer.set("bad_taper", "(@taper_word > 0x3f800000u && @taper_word != 0x80000000u)");
     writer.add(R"(
+uint $largest(uint at, uint count) {                                                @if boxes
+    uint most = 0u;                                                                 @if boxes
+    for (uint i = 0u; i < count; i += 1u) { most = max(most, $lights[at + i] & 0x7fffffffu); }      @if boxes
+    return most;                                                                    @if boxes
+}                                                                                   @if boxes
 uint $state_of(uint at) {
     uint x = @centre_x & 0x7fffffffu;
     uint y = @centre_y & 0x7fffffffu;
@@ -49,8 +65,14 @@ uint $state_of(uint at) {
     uint state = 2u;
     if (max(max(x, y), max(z, size)) > 0x53800000u) { state = 1u; }
     if (max(max(x, y), z) >= 0x7f800000u || size > 0x7f800000u || radius > 0x80000000u) { state = 0u; }
+    if (at >= $kinds.z && at < $kinds.w) {                                                              @if mixed
     uint axis = max(max((@axis_x & 0x7fffffffu), (@axis_y & 0x7fffffffu)), (@axis_z & 0x7fffffffu));   @if spots
     if (@cosine_word != 0xbf800000u && (axis == 0u || axis >= 0x7f800000u || @wide)) { state = 0u; }    @if spots
+    }                                                                                                   @if mixed
+    if (at >= $kinds.w) {                                                                               @if mixed
+    uint most = max($largest(at + @half_axes, 9u), $largest(at + @box_centre, 3u));                     @if boxes
+    if (most >= 0x7f800000u || $largest(at + @half_axes, 9u) == 0u || @bad_taper) { state = 0u; }       @if boxes
+    }                                                                                                   @if mixed
     if (radius == 0xbf800000u) { state = 3u; }
     return state;
 }
@@ -225,10 +247,18 @@ uvec2 $slices_of(vec2 z) {
 
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullOptions& options) {
-    const bool sliced = options.slicing != Slicing::none, spots = options.kind == CullKind::spot;
+    const bool sliced = options.slicing != Slicing::none, mixed = options.kind == CullKind::mixed,
+               spots = options.kind == CullKind::spot || mixed, boxes = options.kind == CullKind::box || mixed;
     name_numbers(writer, options.lights_at);
-    writer.set("given", options.count_in_buffer ? "$light_count[" + std::to_string(options.count_at) + "]"
-                                                : "$segments.x");
+    const auto count_at = [&](std::uint32_t kind) {
+        return "$light_count[" + std::to_string(options.count_at + kind) + "]";
+    };
+    writer.set("given", options.count_in_buffer ? count_at(0) : "$segments.x");
+    writer.set("given_spots", count_at(1));
+    writer.set("given_boxes", count_at(2));
+    writer.set({{"counts", mixed && options.count_in_buffer}});
+    writer.set("is_given", mixed && options.count_in_buffer ? "id < $segments.x && id - first < own"
+                                                            : "id < min(given, $segments.x)");
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
     declare_scratch(writer, options);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
@@ -238,9 +268,10 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     add_masks_of_group(writer);
     add_state(writer);
     add_sphere(writer);
-    if (!options.orthographic || spots) add_worst_operations(writer);
+    if (!options.orthographic || spots || (boxes && options.depth_test)) add_worst_operations(writer);
     add_span(writer, options);
     if (spots) add_spots(writer, options);
+    if (boxes) add_boxes(writer, options);
     if (sliced) add_slices(writer);
 
     // With a depth test a light's record in `scratch` has its sphere, behind which `store_half_spaces` stores a spot's
@@ -250,6 +281,8 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
     uint at = id * @stride;
+    if (id >= $kinds.x) { at = $kinds.z + (id - $kinds.x) * @spot_stride; } @if mixed
+    if (id >= $kinds.y) { at = $kinds.w + (id - $kinds.y) * @box_stride; }  @if mixed
     uint record = @totals + id * @record_words;
     uint state = $state_of(at);
     vec4 s = vec4(0.0, 0.0, 0.0, 1.0);
@@ -262,20 +295,36 @@ uint $project(uint id, uint thread) {
     vec2 x = vec2(-1e30, 1e30);
     vec2 y = x;
     vec2 z = x;
-    if (state == 2u) {
-        z = vec2(s.z - s.w, s.z + s.w);
+    if (at >= $kinds.w && (state == 1u || state == 2u)) {                   @if mixed
+    if (state == 1u || state == 2u) {                                       @if !balls
+        $box box = $box_at(at, s, state == 2u);                             @if boxes
+        s = box.ball;                                                       @if boxes
+        if (box.known) { state = 2u; }                                      @if boxes
+        bounded = state == 2u;                                              @if boxes depth_test
+        z = box.depths;                                                     @if boxes
+        seen = z.x <= z.y && z.y >= $planes.y && z.x <= $planes.z;          @if boxes
+        if (seen) {                                                         @if boxes
+            $store_faces(record + @tested + 4u, box);                       @if boxes depth_test
+            vec4 bounds = $bounds_of_box(box);                              @if boxes
+            x = bounds.xy;                                                  @if boxes
+            y = bounds.zw;                                                  @if boxes
+        }                                                                   @if boxes
+    } else if (state == 2u) {                                               @if mixed
+    if (state == 2u) {                                                      @if balls !mixed
+        z = vec2(s.z - s.w, s.z + s.w);                                     @if balls
         $spot spot = $spot_at(at, s);                                       @if spots
         z = spot.depths;                                                    @if spots
-        bounded = spot.sound;                                               @if spots depth_test
-        seen = z.y >= $planes.y && z.x <= $planes.z;
-        if (seen) {
+        bounded = spot.sound;                                               @if spots depth_test !mixed
+        bounded = spot.sound || at < $kinds.z;                              @if mixed depth_test
+        seen = z.y >= $planes.y && z.x <= $planes.z;                        @if balls
+        if (seen) {                                                         @if balls
             $store_half_spaces(record + @tested + 4u, spot);                @if spots depth_test
             vec4 bounds = $bounds_of_spot(spot);                            @if spots
             x = bounds.xy;                                                  @if spots
             y = bounds.zw;                                                  @if spots
-            x = $bounds_of(s.x, s.z, s.w);                                  @if !spots
-            y = $bounds_of(s.y, s.z, s.w);                                  @if !spots
-        }
+            x = $bounds_of(s.x, s.z, s.w);                                  @if balls !spots
+            y = $bounds_of(s.y, s.z, s.w);                                  @if balls !spots
+        }                                                                   @if balls
     }
     uvec2 columns = $span($axis_x, $grid.x, x);
     uvec2 rows = $span($axis_y, $grid.y, y);
@@ -308,13 +357,24 @@ void $run(uvec2 group, uint thread) {
     if (thread == 0u) { atomicStore(&$tally[0], 0u); }
     $clear_masks(thread);
     sync_group();
+    uint first = 0u;                                                                                @if counts
+    uint own = @given;                                                                              @if counts
+    if (id >= $kinds.x) {                                                                           @if counts
+        first = $kinds.x;                                                                           @if counts
+        own = @given_spots;                                                                         @if counts
+    }                                                                                               @if counts
+    if (id >= $kinds.y) {                                                                           @if counts
+        first = $kinds.y;                                                                           @if counts
+        own = @given_boxes;                                                                         @if counts
+    }                                                                                               @if counts
     uint given = @given;
-    if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
+    if (@is_given) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
         $scratch[@totals + id * @record_words] = 0x10001u;
         $scratch[@totals + id * @record_words + 1u] = 0u;
     }
-    if (id == 0u) { $scratch[3] = given; }
+    if (id == 0u) { $scratch[3] = given; }                                                          @if !counts
+    if (id == 0u) { $scratch[3] = given + @given_spots + @given_boxes; }                            @if counts
     sync_group();
     uint groups = max(($segments.x + 63u) >> 6u, 1u);
     if (number < groups) {

@@ -35,8 +35,14 @@ float $reach($spot s, float along, float across) {
 }
 
 $spot $spot_at(uint at, vec4 ball) {
-    vec3 axis = @axis;
-    float cosine = @cosine;
+    vec3 axis = @axis;                                              @if !mixed
+    float cosine = @cosine;                                         @if !mixed
+    vec3 axis = vec3(0.0, 0.0, 1.0);                                @if mixed
+    float cosine = -1.0;                                            @if mixed
+    if (at >= $kinds.z) {                                           @if mixed
+        axis = @axis;                                               @if mixed
+        cosine = @cosine;                                           @if mixed
+    }                                                               @if mixed
     float length1 = abs(axis.x) + abs(axis.y) + abs(axis.z);
     bool sound = cosine <= -1.0 || (length1 >= 9.5367432e-7 && length1 <= 1048576.0);
     float tolerance = ball.w * 1.5258789e-5;
