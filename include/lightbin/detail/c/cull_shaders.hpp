@@ -25,8 +25,10 @@ inline lightbin_result read_cull_options(const lightbin_cull_options* options, C
     if (given.stride != 0)
         known.lights_at = {given.stride,     given.centre,    given.radius, given.axis,        given.cosine,
                            given.box_centre, given.half_axes, given.taper,  given.spot_stride, given.box_stride};
-    else if (known.kind == CullKind::spot || known.kind == CullKind::box)
-        known.lights_at.stride = (known.kind == CullKind::spot ? sizeof(Spot) : sizeof(Box)) / 4;
+    else if (known.kind == CullKind::spot)
+        known.lights_at.stride = sizeof(Spot) / 4;
+    else if (known.kind == CullKind::box)
+        known.lights_at.stride = sizeof(Box) / 4;
     room.spots = given.spots;
     room.boxes = given.boxes;
     if (given.slots_given != 0)
