@@ -582,7 +582,7 @@ class Made {
         return this.#arrays[key] = this.#core.array(Type, read[key], numbers * read[count], this.#arrays[key]);
     }
     texels(name, columns) {
-        const from = Object.hasOwn(array_of, name) ? this[name] : refuse(`name: ${shown(name)} is no array`);
+        const from = Object.hasOwn(array_of, name) ? this[name] : refuse(`name: ${shown(name)} is not ${Object.keys(array_of).join(', ')}`);
         if (from === undefined) refuse(`name: masks have no ${name}, and lists no words`);
         const channels = array_of[name][1], width = Math.max(whole(columns, 'width', 'uint32_t'), 1);
         const rows = Math.max(Math.ceil(from.length / (channels * width)), 1);

@@ -86,6 +86,7 @@ export class ClusteredLights {
 
     update(renderer, scene, camera) {
         if (this.#maker === undefined) return;  // after dispose()
+        if (renderer.isWebGPURenderer) throw new Error('WebGPURenderer takes lightbin/three-webgpu in place of this');
         const picture = this.#begin(renderer, scene), points = [], spots = [];
         this.#patch(scene.overrideMaterial);
         this.#collect(scene, camera, points, spots);

@@ -283,16 +283,17 @@ test('workers make the same lists, of the module that they were sent or load the
 test('an option that is misspelt or wrong is named', async () => {
     const messages = await page.evaluate(async () => {
         const {ClusteredLights} = await import('lightbin/three');
-        const mistakes = [{tilesize: 16}, {tileSize: -1}, {slices: 0}, {cutoff: -1}, {masks: true, depthTest: true}];
+        const mistakes = [{tilesize: 16}, {tileSize: -1}, {slices: 0}, {cutoff: -1}, {masks: true, depthTest: true}, {}];
         return mistakes.map(options => {
             try {
-                new ClusteredLights(stage.lightbin, options);
+                new ClusteredLights(stage.lightbin, options).update({isWebGPURenderer: true});
             } catch (error) {
                 return error.message;
             }
         });
     });
-    [/there is no 'tilesize', but masks, tileSize/, /tile size/, /slice/, /options.cutoff: -1/, /depthTest/].forEach(
+    [/there is no 'tilesize', but masks, tileSize/, /tile size/, /slice/, /options.cutoff: -1/, /depthTest/,
+     /three-webgpu/].forEach(
         (words, i) => assert.match(messages[i], words));
 });
 
