@@ -152,6 +152,9 @@ struct CullPlan {
     CullConstants constants = {};
     CullBytes bytes = {};
     CullGroups groups[std::size(cull_passes) + 1] = {};  ///< by CullPass
+    /// Whether masks, in two dispatches, are meant for the lights that there is room for, rather than lists: up to
+    /// 1,024 lights, without clusters and depth test.
+    bool masks_suit = false;
 
     CullGroups groups_of(CullPass pass) const { return groups[static_cast<std::size_t>(pass)]; }
 };

@@ -910,7 +910,7 @@ typedef struct lightbin_cull_groups {
 /* All that a program needs to run the shaders of lightbin_cull_shader() for a view. */
 typedef struct lightbin_cull_plan {
     uint32_t size;
-    uint32_t unused;
+    uint32_t masks_suit; /* 1 where masks, in two dispatches, are meant for so few lights (up to 1,024) and no lists */
     /* The sizes of the buffers of a build, in bytes, each a multiple of 4 and at least 16. They need no initial
      * content. */
     uint64_t scratch_bytes;         /* the first words of `scratch` are lightbin_cull_totals afterwards */

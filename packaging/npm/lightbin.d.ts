@@ -411,6 +411,8 @@ export interface CullPlan {
     passes: {pass: CullPass, x: number, y: number}[];
     /** The same for masks in the buffer `lists`, which then has `bytes.masks`. */
     maskPasses: {pass: CullPass, x: number, y: number}[];
+    /** Whether masks are meant for so few lights rather than lists: up to 1,024, without clusters and depth test. */
+    masksSuit: boolean;
 }
 
 /** One resource that the program has to bind. */

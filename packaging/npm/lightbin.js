@@ -800,13 +800,13 @@ function cull_plan(core, view, options, room) {
                 : core.place('matrix', core.matrix(viewMatrix, layout, 'viewMatrix'), 'viewMatrix');
             core.check(c.lightbin_plan_cull, copies[0][address], placed, whole(lights, 'lights', 'uint32_t'),
                 whole(entries, 'entries', 'uint32_t'), copies[1]?.[address] ?? 0, to_view, at);
-            const {scratchBytes, tileBytes, listBytes, maskBytes} = core.read('cullPlan', at);
+            const {scratchBytes, tileBytes, listBytes, maskBytes, masksSuit} = core.read('cullPlan', at);
             const groups = core.copy(Uint32Array, at + members.groups[1], 8 * names.length);
             const all = names.map((pass, i) => ({pass, x: groups[2 * i], y: groups[2 * i + 1]}));
             return {
                 constants: core.copy(Uint32Array, at + members.constants[1], 256),
                 bytes: {scratch: scratchBytes, tiles: tileBytes, lists: listBytes, masks: maskBytes},
-                passes: all.slice(0, -1), maskPasses: [all[0], all.at(-1)],
+                passes: all.slice(0, -1), maskPasses: [all[0], all.at(-1)], masksSuit: masksSuit === 1,
             };
         });
     } finally {

@@ -626,6 +626,7 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
                                             all ? &cpp_to_view : nullptr);
             REQUIRE(expected);
             works(result);
+            CHECK((plan.masks_suit == 1) == expected->masks_suit);
             CHECK(plan.scratch_bytes == expected->bytes.scratch);
             CHECK(plan.tile_bytes == expected->bytes.tiles);
             CHECK(plan.list_bytes == expected->bytes.lists);

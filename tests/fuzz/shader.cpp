@@ -416,6 +416,8 @@ void check_plan(const CullPlan& plan, const View& view, const CullOptions& optio
     const std::uint64_t mask_words = (lights + 31) / 32, of_each = columns + rows + 33;
     sized(plan.bytes.masks, 4 * (1 + of_each * mask_words));
     holds(plan.bytes.masks < std::uint64_t{1} << 34, "more words of masks than numbers");
+    const bool few = lights < 1025 && options.slicing != Slicing::clusters && !options.depth_test;
+    holds(plan.masks_suit == few, "masks for many lights, or lists for few");
 
     // The arrays in `scratch` lie one after another, with the sizes in docs/gpu.md.
     const std::uint64_t words = plan.bytes.scratch / 4;

@@ -162,6 +162,10 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
             assert.equal((await lightbin.cullShader({...options, pass})).text, text());
         }
     }
+    for (const [lights, suit] of [[1024, true], [1025, false]]) {
+        const plan = await lightbin.planCull(view, {language: 'wgsl'}, {lights, entries: 1});
+        assert.equal(plan.masksSuit, suit);
+    }
     assert.equal(at, file.length);
     return [view, slices, given, wide, cones, rooms];
 });

@@ -75,6 +75,7 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
                                 to_view != nullptr ? &matrix : nullptr);
         if (!made) return refused(made.error());
         lightbin_cull_plan filled = {};
+        filled.masks_suit = made->masks_suit;
         filled.scratch_bytes = made->bytes.scratch;
         filled.tile_bytes = made->bytes.tiles;
         filled.list_bytes = made->bytes.lists;

@@ -169,6 +169,7 @@ inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, 
     set(CullPass::offsets, 1);
     set(CullPass::fill, blocks * to.segments);
     set(CullPass::masks, mask_words * divided_up(of_each, 128));
+    plan.masks_suit = lights <= 1024 && !clusters && !options.depth_test;
     return plan;
 }
 
