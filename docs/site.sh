@@ -7,13 +7,13 @@ me=docs/site.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 takes "--serve" "--serve" "$@"
-install_packages git mkdocs mkdocs-material python3-pymdownx python3-pygments
+install_packages mkdocs mkdocs-material python3-pymdownx python3-pygments
 make_build_folder
 
 # Every file is where it is here, so that links work, to sources, too.
 rm -rf build/site.pages
 mkdir build/site.pages
-git ls-files -z | tar -c --null -T - | tar -x -C build/site.pages
+find . \( -name .git -o -path ./build \) -prune -o -type f -print0 | tar -c --null -T - | tar -x -C build/site.pages
 mkdocs build --quiet --strict --config-file docs/site.yml
 echo "$me: build/site/index.html is the front page"
 [ $# -eq 0 ] || exec python3 -m http.server --bind 127.0.0.1 --directory build/site 8080
