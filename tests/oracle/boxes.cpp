@@ -6,30 +6,6 @@
 
 #include <lightbin/box.hpp>
 
-namespace oracle {
-
-/// Returns world-space boxes that a view matrix moves about where they are wanted in view space.
-static std::vector<BoxLight> into_world(std::vector<BoxLight> lights, const ViewMatrix& view) {
-    for (BoxLight& b : lights) {
-        std::vector<Light> points = {{b.x, b.y, b.z, b.radius}, {b.centre[0], b.centre[1], b.centre[2], 0}};
-        for (const float(&h)[3] : b.half_axes)
-            points.push_back({b.centre[0] + h[0], b.centre[1] + h[1], b.centre[2] + h[2], 0});
-        points = into_world(points, view);
-        const Light &ball = points[0], &c = points[1];
-        b.x = ball.x, b.y = ball.y, b.z = ball.z, b.radius = ball.w;
-        b.centre[0] = c.x, b.centre[1] = c.y, b.centre[2] = c.z;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const bool none = b.half_axes[i][0] == 0 && b.half_axes[i][1] == 0 && b.half_axes[i][2] == 0;
-            if (none) continue;
-            const Light& end = points[2 + i];
-            b.half_axes[i][0] = end.x - c.x, b.half_axes[i][1] = end.y - c.y, b.half_axes[i][2] = end.z - c.z;
-        }
-    }
-    return lights;
-}
-
-}  // namespace oracle
-
 using namespace oracle;
 
 namespace {

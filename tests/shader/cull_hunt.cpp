@@ -12,9 +12,9 @@
 
 #include "../../bench/exact/truth.hpp"
 #include "../../bench/gpu/device.hpp"
+#include "../oracle/boxes.hpp"
 #include "../oracle/families.hpp"
 #include "../oracle/library_view.hpp"
-#include "../oracle/spots.hpp"
 
 #include <cstdlib>
 #include <optional>
@@ -22,20 +22,25 @@
 namespace {
 
 using namespace oracle;
+using lightbin::CullKind;
 using lightbin::Slicing;
 
 /// A scene for both the Binner and the passes.
 struct HuntScene {
     Camera camera;
     CullCase made;
-    std::vector<SpotLight> lights;  ///< of spheres, the ball alone counts
+    std::vector<SpotLight> lights;  ///< spheres, of which the ball alone counts, and behind them spots
+    std::size_t spheres = 0;
+    std::vector<BoxLight> boxes;  ///< ids go on with these
     std::optional<ViewMatrix> matrix;
     std::array<std::vector<float>, 2> bounds;
     lightbin::Slices slices;
 
-    bool spots() const { return made.options.kind == lightbin::CullKind::spot; }
     bool clusters() const { return made.options.slicing == Slicing::clusters; }
     bool has_bounds() const { return clusters() ? made.options.bounded : made.options.depth_test; }
+    std::string text_of(std::size_t light) const {
+        return light < lights.size() ? text(lights[light]) : text(boxes[light - lights.size()]);
+    }
 };
 
 /// Returns a viewport of 1 to 1919 by 1 to 1079 pixels, small ones as often as large ones.
@@ -64,20 +69,15 @@ Camera random_camera(Random& random, int most_tiles) {
 }
 
 /// Returns lights of one of the oracle's sets, or of all of them.
-std::vector<SpotLight> random_lights(const Camera& camera, bool spots, std::size_t count, Random& random) {
-    const Aim aim(camera);
-    const auto one_of = [&](const auto& sets) {
-        return sets[static_cast<std::size_t>(random.bits() % sets.size())].one;
-    };
-    constexpr float cosines[] = {0.999994f, 0, -0.0f, -1, 1, -0.75f, 0.70710678f, 0x1p-20f};
+template <class Set>
+auto random_lights(const std::vector<Set>& sets, const Aim& aim, std::size_t count, Random& random) {
+    const auto one = [&] { return sets[static_cast<std::size_t>(random.bits() % sets.size())].one; };
     const bool mixed = random.chance(0.5);
-    auto sphere = one_of(sphere_sets());
-    auto spot = one_of(spot_sets());
-    std::vector<SpotLight> lights;
+    auto make_light = one();
+    std::vector<decltype(make_light(aim, random))> lights;
     while (lights.size() < count) {
-        if (mixed) sphere = one_of(sphere_sets()), spot = one_of(spot_sets());
-        lights.push_back(spots ? spot(aim, random) : SpotLight{sphere(aim, random), 0, 0, 0, -1});
-        if (spots && random.chance(0.1)) lights.back().cosine = cosines[random.integer(0, 7)];
+        if (mixed) make_light = one();
+        lights.push_back(make_light(aim, random));
     }
     return lights;
 }
@@ -98,27 +98,46 @@ HuntScene random_scene(std::uint64_t number) {
     const bool clusters = options.slicing == Slicing::clusters;
     const Camera camera = random_camera(random, many ? 20 : clusters ? 250 : 2500);
     const lightbin::View view = *library_view(camera);
-    options.kind = random.chance(0.6) ? lightbin::CullKind::spot : lightbin::CullKind::sphere;
+    options.kind = static_cast<CullKind>(random.integer(0, 3));
     options.depth_test = random.chance(0.7);
     options.bounded = clusters && random.chance(0.4);
     options.max_only = !clusters && options.depth_test && random.chance(0.2);
     options.orthographic = view.orthographic();
     options.world_space = random.chance(0.4);
     options.ids = random.chance(0.5) ? lightbin::IdWidth::u16 : lightbin::IdWidth::u32;
-    const bool spots = options.kind == lightbin::CullKind::spot;
-    options.lights_at.stride = sizeof(SpotLight) / 4;
-    const auto count = static_cast<std::size_t>(many ? random.integer(1000, 2500) : random.integer(1, 60));
-    std::vector<SpotLight> lights = random_lights(camera, spots, count, random);
-
+    options.lights_at.stride = options.kind == CullKind::box ? 17 : sizeof(SpotLight) / 4;
+    // How many spheres, spots and boxes; 0 of the kinds that the options exclude.
+    const auto count_of = [&](CullKind kind) {
+        const int count = many ? random.integer(400, 2500) : random.integer(1, 40);
+        return options.kind == kind || options.kind == CullKind::mixed ? static_cast<std::size_t>(count) : 0;
+    };
+    const std::size_t spheres = count_of(CullKind::sphere), spots = count_of(CullKind::spot);
     const Aim aim(camera);
+    std::vector<SpotLight> lights;
+    for (const Light& ball : random_lights(sphere_sets(), aim, spheres, random))
+        lights.push_back({ball, 0, 0, 0, -1});
+    constexpr float cosines[] = {0.999994f, 0, -0.0f, -1, 1, -0.75f, 0.70710678f, 0x1p-20f};
+    for (SpotLight& spot : random_lights(spot_sets(), aim, spots, random)) {
+        if (random.chance(0.1)) spot.cosine = cosines[random.integer(0, 7)];
+        lights.push_back(spot);
+    }
+    std::vector<BoxLight> boxes = random_lights(box_sets(), aim, count_of(CullKind::box), random);
+
     Scene depths{camera, {}, {}, {}};
     for (const SpotLight& light : lights)
         depths.lights.push_back(light.ball);
+    for (const BoxLight& box : boxes)
+        depths.lights.push_back({box.x, box.y, box.z, box.radius});
     families::set_bounds(depths, aim, random, random.chance(0.2) ? 0.5 : 0.02);
     for (std::size_t tile = 0; tile < depths.min.size(); ++tile)
         if (random.chance(0.03)) depths.max[tile] = -(depths.min[tile] = -HUGE_VALF);
-    HuntScene scene{camera, {"", view, options, {}, static_cast<std::uint32_t>(count)}, {}, {},
-                    {depths.min, depths.max}, random_slices(aim, depths.lights, random)};
+    const auto count = static_cast<std::uint32_t>(depths.lights.size());
+    HuntScene scene{camera, {"", view, options, {}, count}, {}, spheres, {}, {}, {depths.min, depths.max},
+                    random_slices(aim, depths.lights, random)};
+    if (options.kind == CullKind::mixed) {
+        scene.made.spots = static_cast<std::uint32_t>(spots);
+        scene.made.boxes = static_cast<std::uint32_t>(boxes.size());
+    }
     if (clusters) scene.made.slices = scene.slices;
     if (options.world_space) {
         const std::vector<ViewMatrix> matrices = view_matrices(random);
@@ -126,14 +145,20 @@ HuntScene random_scene(std::uint64_t number) {
             scene.matrix = matrices[static_cast<std::size_t>(random.bits() % matrices.size())];
         while (scene.matrix->stretch == 0 || scene.matrix->large);
         lights = into_world(lights, *scene.matrix);
+        boxes = into_world(boxes, *scene.matrix);
         scene.made.to_view = lightbin::detail::to_matrix(scene.matrix->m);
     }
-    scene.made.lights = words_of(lights);
+    scene.made.lights = lights.empty() ? words_of(boxes) : words_of(lights);
+    if (options.kind == CullKind::mixed) {
+        const std::vector<std::uint32_t> words = words_of(boxes);
+        scene.made.lights.insert(scene.made.lights.end(), words.begin(), words.end());
+    }
     scene.made.room = static_cast<std::uint32_t>(count * view.tile_count()) *
                       static_cast<std::uint32_t>(clusters ? scene.slices.count() : 1);
     scene.made.z_bounds = CullTests::cull_depths({view, {}, scene.slices}, scene.bounds, options.depth_test,
                                                  options.slicing, options.bounded);
     scene.lights = std::move(lights);
+    scene.boxes = std::move(boxes);
     return scene;
 }
 
@@ -173,25 +198,33 @@ BuiltLists binner_lists(const HuntScene& scene, lightbin::LightCounts& counts) {
     BuiltScene built{scene.made.view, {}, scene.slices};
     if (scene.has_bounds()) built.bounds.max = scene.bounds[1];
     if (scene.has_bounds() && !scene.made.options.max_only) built.bounds.min = scene.bounds[0];
-    const auto of = [&](const auto& to_light) {
-        auto source = lightbin::world_space(scene.lights, scene.matrix ? scene.matrix->m : identity, to_light);
+    const auto of = [&](const auto& lights, const auto& to_light) {
+        auto source = lightbin::world_space(lights, scene.matrix ? scene.matrix->m : identity, to_light);
         if (!scene.matrix) source.to_view.reset();
-        using lightbin::Options;
-        constexpr Options clusters{.slicing = Slicing::clusters}, tested{.depth_test = true},
-            both{.depth_test = true, .slicing = Slicing::clusters};
-        const bool depth_test = scene.made.options.depth_test;
-        if (scene.clusters())
-            return depth_test ? binned<both, true>(built, source, counts)
-                              : binned<clusters, true>(built, source, counts);
-        return depth_test ? binned<tested>(built, source, counts) : binned<Options{}>(built, source, counts);
+        return source;
     };
-    const auto sphere = [](const SpotLight& s) {
-        return lightbin::Sphere{s.ball.x, s.ball.y, s.ball.z, s.ball.w};
-    };
-    const auto spot = [](const SpotLight& s) {
-        return lightbin::Spot{s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine};
-    };
-    return scene.spots() ? of(spot) : of(sphere);
+    const std::span<const SpotLight> lights(scene.lights);
+    const auto source = lightbin::lights(
+        of(lights.first(scene.spheres),
+           [](const SpotLight& s) {
+               return lightbin::Sphere{s.ball.x, s.ball.y, s.ball.z, s.ball.w};
+           }),
+        of(lights.subspan(scene.spheres),
+           [](const SpotLight& s) {
+               return lightbin::Spot{s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine};
+           }),
+        of(scene.boxes, [](const BoxLight& b) {
+            lightbin::Box box = {b.x, b.y, b.z, b.radius, b.centre[0], b.centre[1], b.centre[2], {}, b.taper};
+            std::copy(&b.half_axes[0][0], &b.half_axes[0][0] + 9, &box.half_axes[0][0]);
+            return box;
+        }));
+    using lightbin::Options;
+    constexpr Options clusters{.slicing = Slicing::clusters}, tested{.depth_test = true},
+        both{.depth_test = true, .slicing = Slicing::clusters};
+    const bool depth_test = scene.made.options.depth_test;
+    if (scene.clusters())
+        return depth_test ? binned<both, true>(built, source, counts) : binned<clusters, true>(built, source, counts);
+    return depth_test ? binned<tested>(built, source, counts) : binned<Options{}>(built, source, counts);
 }
 
 /// Decides by exact arithmetic whether a scene's lights reach its cells.
@@ -200,17 +233,27 @@ public:
     explicit Referee(const HuntScene& scene)
         : scene_(scene), truth_(scene.camera), planes_(truth_.oracle, scene.matrix ? &*scene.matrix : nullptr) {
         std::optional<AroundImage> around;
-        if (scene.matrix) around.emplace(truth_.oracle, *scene.matrix);
+        std::optional<ExactView> view;
+        if (scene.matrix) around.emplace(truth_.oracle, *scene.matrix), view.emplace(*scene.matrix);
+        const auto add_ball = [&](bool bad, const Light& ball) {
+            if (bad || around) {
+                balls_.push_back(bad ? FlatBall{} : (*around)(ball));
+                return;
+            }
+            const CameraBall seen = truth_.oracle.in_camera(exact_ball(ball.x, ball.y, ball.z, ball.w));
+            balls_.push_back({nearly(seen.x), nearly(seen.y), nearly(seen.depth),
+                              seen.all ? HUGE_VAL : nearly(seen.radius)});
+        };
         for (const SpotLight& light : scene.lights) {
             const bool bad = is_bad(light);
             exact_.push_back(exact_spot(bad ? SpotLight{{}, 0, 0, 1, 1} : light));
-            if (bad || around) {
-                balls_.push_back(bad ? FlatBall{} : (*around)(light.ball));
-                continue;
-            }
-            const CameraBall seen = truth_.oracle.in_camera(exact_.back().ball);
-            balls_.push_back({nearly(seen.x), nearly(seen.y), nearly(seen.depth),
-                              seen.all ? HUGE_VAL : nearly(seen.radius)});
+            add_ball(bad, light.ball);
+        }
+        const auto to_camera = [&](const Vector& at) { return truth_.oracle.in_camera({view ? (*view)(at) : at, 0}); };
+        for (const BoxLight& box : scene.boxes) {
+            const bool bad = is_bad(box);
+            boxes_.push_back(bad ? FlatBox{} : flat_box(box, to_camera));
+            add_ball(bad, {box.x, box.y, box.z, box.radius});
         }
     }
 
@@ -231,9 +274,12 @@ public:
         const int x = static_cast<int>(tile) % scene_.made.view.tiles_x(),
                   y = static_cast<int>(tile) / scene_.made.view.tiles_x();
         if (flat.surely_empty() || truth_.filter.apart(x, x + 1, y, y + 1, flat, balls_[light])) return false;
+        const bool box = light >= exact_.size();
+        if (box && oracle::apart(truth_.filter, x, x + 1, y, y + 1, flat, boxes_[light - exact_.size()])) return false;
         const Depths depths = truth_.oracle.depths(min, max);
         if (depths.contains_none()) return false;
         const std::vector<HalfSpace> planes = planes_({x, x + 1, y, y + 1}, depths);
+        if (box) return oracle::meets(planes, ExactBox(scene_.boxes[light - exact_.size()]));
         const ExactSpot& spot = exact_[light];
         for (const HalfSpace& plane : planes) {
             const Rational at = plane.at(spot.ball.centre);
@@ -254,11 +300,23 @@ private:
     Truth truth_;
     CellPlanes planes_;
     std::vector<ExactSpot> exact_;
+    std::vector<FlatBox> boxes_;
     std::vector<FlatBall> balls_;
 };
 
 /// Returns whether the passes list a light everywhere, as one of its numbers is beyond 2^40.
-bool is_everywhere(const HuntScene& scene, const lightbin::CullConstants& constants, const Light& light) {
+bool is_everywhere(const HuntScene& scene, const lightbin::CullConstants& constants, std::size_t id) {
+    Light light;
+    if (id < scene.lights.size()) {
+        light = scene.lights[id].ball;
+    } else {
+        const BoxLight& box = scene.boxes[id - scene.lights.size()];
+        light = {box.x, box.y, box.z, box.radius};
+        const auto beyond = [](float number) { return std::abs(number) > 0x1p40f; };
+        if (std::any_of(box.centre, box.centre + 3, beyond)) return true;
+        for (const auto& half_axis : box.half_axes)
+            if (std::any_of(half_axis, half_axis + 3, beyond)) return true;
+    }
     const double limit = 0x1p40, at[] = {light.x, light.y, light.z};
     bool far_away = static_cast<double>(light.w) > limit;
     for (const double each : at)
@@ -295,7 +353,7 @@ struct HuntTally {
     }
     void print(const std::string& name) const {
         const double percent = entries == 0 ? 0 : 100.0 * static_cast<double>(more) / static_cast<double>(entries);
-        std::printf("%-29s %6zu %9zu %6zu %7zu %7zu %8zu %7.3f %10zu %7zu %5zu %4zu %6zu\n", name.c_str(), scenes,
+        std::printf("%-19s %6zu %9zu %6zu %7zu %7zu %8zu %7.3f %10zu %7zu %5zu %4zu %6zu\n", name.c_str(), scenes,
                     entries, missed, lacked, lacking, more, percent, everywhere, asked, reach, open, faults);
     }
 };
@@ -322,7 +380,7 @@ HuntTally hunt(GpuDevice& device, const HuntScene& scene, const std::string& nam
         tally.open += !reaches;
         missed += reaches == true;
         if (reaches == false || (!reaches && gpu_has)) return;
-        fault("cell " + std::to_string(cell) + ", light " + std::to_string(light) + " " + text(scene.lights[light]) +
+        fault("cell " + std::to_string(cell) + ", light " + std::to_string(light) + " " + scene.text_of(light) +
               (reaches ? " reaches, but is only in the list of the " : " is open, and only in the list of the ") +
               (gpu_has ? "GPU" : "Binner"));
     };
@@ -341,7 +399,7 @@ HuntTally hunt(GpuDevice& device, const HuntScene& scene, const std::string& nam
         others.clear();
         std::ranges::set_difference(own, wanted, std::back_inserter(others));
         for (const std::uint32_t light : others)
-            if (is_everywhere(scene, plan.constants, scene.lights[light].ball))
+            if (is_everywhere(scene, plan.constants, light))
                 ++tally.everywhere;
             else
                 more.push_back({cell, light});
@@ -366,14 +424,13 @@ int main(int count, char** arguments) {
     for (std::uint64_t number = share.first; number < scenes; number += share.count) {
         const HuntScene scene = random_scene(number);
         const HuntTally tally = hunt(device, scene, "scene " + std::to_string(number));
-        tallies[4 * scene.spots() + 2 * scene.clusters() + scene.made.options.depth_test].add(tally);
+        tallies[2 * static_cast<std::size_t>(scene.made.options.kind) + scene.made.options.depth_test].add(tally);
         all.add(tally);
     }
-    std::printf("%-29s %6s %9s %6s %7s %7s %8s %7s %10s %7s %5s %4s %6s\n", "", "scenes", "entries", "missed", "lacked",
+    std::printf("%-19s %6s %9s %6s %7s %7s %8s %7s %10s %7s %5s %4s %6s\n", "", "scenes", "entries", "missed", "lacked",
                 "lacking", "more", "%", "everywhere", "asked", "reach", "open", "faults");
     for (unsigned kind = 0; kind < 8; ++kind)
-        tallies[kind].print(std::string(kind & 4 ? "spots" : "spheres") + (kind & 2 ? ", clusters" : ", tiles") +
-                            (kind & 1 ? ", depth test" : ""));
+        tallies[kind].print(to_string(static_cast<CullKind>(kind / 2)) + std::string(kind & 1 ? ", depth test" : ""));
     all.print("all");
     std::printf("%zu scenes, %zu entries of the Binner, %zu missed, %zu faults\n", all.scenes, all.entries, all.missed,
                 all.faults);
