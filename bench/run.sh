@@ -26,6 +26,9 @@
 #   gpu [--quick]
 #       Builds on the GPU by shader_cull beside builds on the CPU with their upload, in OpenGL. GPU's lists that lack an
 #       entry of the CPU's, or are out of order, are an error. Writes build/bench/gpu.csv.
+#   van_oosten [--quick]
+#       The tables of a published thesis, up to 7,000,000 lights, beside builds of lights with the same statistics on the
+#       CPU and, where there is one, the GPU. Lists that are not right are an error. Writes build/bench/van_oosten.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -34,7 +37,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | frames | stability | gpu)
+binning | report | error | frames | stability | gpu | van_oosten)
     program=$1
     shift
     ;;
@@ -43,7 +46,7 @@ options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
 binning) options="--quick --filter=..." words="" pattern="" ;;
 frames) options="--quick --counts --into=..." ;;
-gpu) words="" pattern="" ;;
+gpu | van_oosten) words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
 forms=$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')
@@ -51,7 +54,7 @@ takes "$program, $options${options:+${words:+, }}$words" "$forms${forms:+${patte
 
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtinygltf-dev"
 case $program in
-frames | gpu) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
+frames | gpu | van_oosten) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
 esac
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
