@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// van_oosten [--quick]: the two tables of times by number of lights of J. van Oosten, "Volume Tiled Forward Shading", MSc
-// thesis, Utrecht University, 2017, chapter "Results" (Sponza, 1920x1080), beside builds of lights with the same
+// van_oosten [--quick]: the two tables of times by number of lights of J. van Oosten, "Volume Tiled Forward Shading",
+// MSc thesis, Utrecht University, 2017, chapter "Results" (Sponza, 1920x1080), beside builds of lights with the same
 // statistics. The lists of the two smallest sets are compared with the exact ones. Writes van_oosten.csv.
 //
-// His columns are milliseconds on a GeForce GTX Titan X: `tiled` culls lights against 32-pixel tiles between their least
-// and greatest depth, `volume` tests every light against every 64-pixel tile of a slice that has a sample in it, and
-// `BVH` is sort + build + assign (without two passes that he does not print). The configuration of his program has the
-// camera, the range of the lights and the box that they are in. What it does not have is made up: the seeds; how the box
-// grows (here in proportion, about its middle); Sponza (here a hall of about its size, with columns). Half of his lights
-// were spots; here all are spheres.
+// His columns are milliseconds on a GeForce GTX Titan X: `tiled` culls lights against 32-pixel tiles between their
+// least and greatest depth, `volume` tests every light against every cell of 64-pixel tiles and slices that has a
+// sample in it, and `BVH` is sort + build + assign (without two passes that he does not print). The configuration of
+// his program has the camera, the range of the lights and the box that they are in. What it does not have is made up:
+// the seeds; how the box grows (here in proportion, about its middle); Sponza (here a hall of about its size, with
+// columns). Half of his lights were spots; here all are spheres.
 #include "arguments.hpp"
 #include "console.hpp"
 #include "exact_pairs.hpp"
@@ -66,7 +66,7 @@ Lens his_lens() {
     return lens;
 }
 
-/// His slices are as deep as a tile is high: each ends at 1 + 2 tan(22.5 degrees) / 17 times the depth of its beginning.
+/// His slices are as deep as a tile is high: each ends at 1 + 2 tan(22.5 degrees) / 17 times the depth where it begins.
 lightbin::Slices his_slices() {
     const Lens lens = his_lens();
     const double ratio = 1 + 2 * lens.tan_half_height / 17;
@@ -218,7 +218,7 @@ public:
     std::string checked() const {
         return text("Lists: %zu of %zu entries of exact sets are wrong, %.1f %% are more; by shader_cull, "
                     "%zu of %zu "
-                    "are missed, %zu are out of order. ",
+                    "are missed, %zu are out of order.\n",
                     check_.wrong, check_.exact, 100 * double(check_.more) / double(check_.exact),
                     on_gpu_.missed, on_gpu_.entries, on_gpu_.unordered) +
                gpu_said_;
