@@ -14,8 +14,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// Adds the struct of a box and the function `box_at`, which reads the box of a light whose ball, the sphere that cuts
-/// it, is given. A box with numbers beyond 2^40 is not `known`: it has a size of 0 and an infinite error. `depths` are
-/// the light's view depths. The ball's radius is -2 where it cuts nothing off: where `cuts` is false, and where it
+/// it, is given. A box with numbers beyond 2^40 is not `known`: its error is so large that it bounds nothing. `depths`
+/// are the light's view depths. The ball's radius is -2 where it cuts nothing off: where `cuts` is false, and where it
 /// holds all corners up to a few times the 2^-17 of its radius by which the Binner decides the same.
 inline void add_box_at(ShaderWriter& writer) {
     writer.add(R"(
@@ -49,9 +49,10 @@ vec3 $corner($box b, uint i) {
     return corner;
 }
 
-vec3 $to_view(vec3 apart) {                                                 @if world_space
-    return @turned;                                                         @if world_space
-}                                                                           @if world_space
+vec3 $to_view(vec3 apart) {
+    return apart * $signs.xyz;                                              @if !world_space
+    return (@turned) * $signs.xyz;                                          @if world_space
+}
 
 $box $box_at(uint at, vec4 ball, bool cuts) {
     $box b;
@@ -61,44 +62,32 @@ $box $box_at(uint at, vec4 ball, bool cuts) {
     b.y = b.centre;
     b.z = b.centre;
     b.taper = @taper;
-    b.error = 1e30;
-    b.size = 0.0;
-    b.known = false;
+    b.error = 1e-36;
+    b.size = 2.0e12;
     if (max($largest(at + @half_axes, 9u), $largest(at + @box_centre, 3u)) <= 0x53800000u) {
         b.centre = @box_middle;
         b.x = @half_x;
         b.y = @half_y;
         b.z = @half_z;
-        b.error = 1e-36;
         b.centre = b.centre - $origin.xyz;                                                      @if world_space
-        b.size = $extent(b.centre) + $extent(b.x) + $extent(b.y) + $extent(b.z);            @if world_space
-        b.error += (b.size * $column_x.w + $column_y.w) * 2.0;                                  @if world_space
-        b.centre = $to_view(b.centre) + $origin_image.xyz;                                      @if world_space
-        b.x = $to_view(b.x);                                                                    @if world_space
-        b.y = $to_view(b.y);                                                                    @if world_space
-        b.z = $to_view(b.z);                                                                    @if world_space
-        b.centre = b.centre * $signs.xyz;
-        b.x = b.x * $signs.xyz;
-        b.y = b.y * $signs.xyz;
-        b.z = b.z * $signs.xyz;
+        float size = $extent(b.centre) + $extent(b.x) + $extent(b.y) + $extent(b.z);            @if world_space
+        b.error += (size * $column_x.w + $column_y.w) * 2.0;                                    @if world_space
+        b.centre = $to_view(b.centre);
+        b.centre = b.centre + $origin_image.xyz * $signs.xyz;                                   @if world_space
+        b.x = $to_view(b.x);
+        b.y = $to_view(b.y);
+        b.z = $to_view(b.z);
         b.size = $extent(b.centre) + $extent(b.x) + $extent(b.y) + $extent(b.z);
-        b.error += b.size * 3.8146973e-6;
-        b.known = b.size + b.error <= 1.0995116e12;
     }
-    if (!b.known) {
-        b.centre = vec3(0.0, 0.0, 0.0);
-        b.x = b.centre;
-        b.y = b.centre;
-        b.z = b.centre;
-        b.size = 0.0;
-        b.error = 1e30;
-    }
+    b.error += b.size * 3.8146973e-6;
+    b.known = b.size + b.error <= 1.0995116e12;
+    if (!b.known) { b.error = 1e30; }
     b.depths = vec2(1e30, -1e30);
     float reach2 = 0.0;
     for (uint i = 0u; i < 8u; i += 1u) {
         vec3 corner = $corner(b, i);
         b.depths = vec2(min(b.depths.x, corner.z), max(b.depths.y, corner.z));
-        if (cuts) {
+        if (cuts && b.known) {
             vec3 apart = corner - ball.xyz;
             reach2 = max(reach2, apart.x * apart.x + apart.y * apart.y + apart.z * apart.z);
         }
@@ -170,19 +159,12 @@ vec4 $bounds_of_box($box b) {
 /// does, and without slices two for its depths. Each is a vec4 (n, most) of the points p with  n.p <= most.
 ///
 /// As `most` is the greatest n.p of the box, no light is missed, whatever n is. So that the Binner's lists are held,
-/// too, errors of n are allowed for. The half axes are divided by their size, as there, and n by the size of the products
-/// that it is made of: then the absolute values of its coordinates add up to at most 1. Each coordinate is off by up to
-/// 15u, the Binner's by half of that, and by twice the error of directions that were transformed; 2^-14 = 1024u is more
-/// where the transform stretches no length 20 times as much as another.
+/// too, errors of n are allowed for. The half axes are divided by their size, as there, and n by the size of the
+/// products that it is made of: then the absolute values of its coordinates add up to at most 1. Each coordinate is off
+/// by up to 15u, the Binner's by half of that, and by twice the error of directions that were transformed; 2^-14 =
+/// 1024u is more where the transform stretches no length 20 times as much as another.
 inline void add_faces(ShaderWriter& writer) {
     writer.add(R"(
-void $store_face(uint at, vec3 n, float most) {
-    $scratch[at] = floatBitsToUint(n.x);
-    $scratch[at + 1u] = floatBitsToUint(n.y);
-    $scratch[at + 2u] = floatBitsToUint(n.z);
-    $scratch[at + 3u] = floatBitsToUint(most);
-}
-
 float $most($box b, vec3 n) {
     float across = abs(dot(n, b.x)) + abs(dot(n, b.y));
     float along = dot(n, b.z);
@@ -216,15 +198,15 @@ void $store_faces(uint at, $box b) {
             up = (n - tilt) * $quotient(1.0, products);
             down = (n * -1.0 - tilt) * $quotient(1.0, products);
         }
-        $store_face(at + 8u * i, up, $most(b, up));
-        $store_face(at + 8u * i + 4u, down, $most(b, down));
+        $store_half_space(at + 8u * i, up, $most(b, up));
+        $store_half_space(at + 8u * i + 4u, down, $most(b, down));
         n = x;
         x = y;
         y = z;
         z = n;
     }
-    $store_face(at + 24u, vec3(0.0, 0.0, 1.0), b.depths.y);                     @if !clusters
-    $store_face(at + 28u, vec3(0.0, 0.0, -1.0), -b.depths.x);                   @if !clusters
+    $store_half_space(at + 24u, vec3(0.0, 0.0, 1.0), b.depths.y);                     @if !clusters
+    $store_half_space(at + 28u, vec3(0.0, 0.0, -1.0), -b.depths.x);                   @if !clusters
 }
 )");
 }

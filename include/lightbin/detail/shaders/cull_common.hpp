@@ -74,6 +74,18 @@ inline void declare_scratch(ShaderWriter& writer, const CullOptions& options) {
     writer.declare_storage("scratch", "uint", "", options.scratch, 4);
 }
 
+/// Adds `store_half_space`, which writes what `meets_half_spaces` of cull_lists.hpp reads.
+inline void add_store_half_space(ShaderWriter& writer) {
+    writer.add(R"(
+void $store_half_space(uint at, vec3 n, float most) {
+    $scratch[at] = floatBitsToUint(n.x);
+    $scratch[at + 1u] = floatBitsToUint(n.y);
+    $scratch[at + 2u] = floatBitsToUint(n.z);
+    $scratch[at + 3u] = floatBitsToUint(most);
+}
+)");
+}
+
 /// Adds `sum`, which adds two numbers and returns 2^32 - 1 if the sum overflows.
 inline void add_saturated_sum(ShaderWriter& writer) {
     writer.add("\nuint $sum(uint a, uint b) {\n    return a + min(b, ~a);\n}\n");

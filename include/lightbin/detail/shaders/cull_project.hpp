@@ -257,8 +257,6 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     writer.set("given_spots", count_at(1));
     writer.set("given_boxes", count_at(2));
     writer.set({{"counts", mixed && options.count_in_buffer}});
-    writer.set("is_given", mixed && options.count_in_buffer ? "id < $segments.x && id - first < own"
-                                                            : "id < min(given, $segments.x)");
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
     declare_scratch(writer, options);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
@@ -270,6 +268,7 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     add_sphere(writer);
     if (!options.orthographic || spots || (boxes && options.depth_test)) add_worst_operations(writer);
     add_span(writer, options);
+    if ((spots || boxes) && options.depth_test) add_store_half_space(writer);
     if (spots) add_spots(writer, options);
     if (boxes) add_boxes(writer, options);
     if (sliced) add_slices(writer);
@@ -357,24 +356,16 @@ void $run(uvec2 group, uint thread) {
     if (thread == 0u) { atomicStore(&$tally[0], 0u); }
     $clear_masks(thread);
     sync_group();
-    uint first = 0u;                                                                                @if counts
-    uint own = @given;                                                                              @if counts
-    if (id >= $kinds.x) {                                                                           @if counts
-        first = $kinds.x;                                                                           @if counts
-        own = @given_spots;                                                                         @if counts
-    }                                                                                               @if counts
-    if (id >= $kinds.y) {                                                                           @if counts
-        first = $kinds.y;                                                                           @if counts
-        own = @given_boxes;                                                                         @if counts
-    }                                                                                               @if counts
     uint given = @given;
-    if (@is_given) { atomicAdd(&$tally[0], $project(id, thread)); }
+    if (id >= $kinds.x) { given = $kinds.x + min(@given_spots, $segments.x); }                      @if counts
+    if (id >= $kinds.y) { given = $kinds.y + min(@given_boxes, $segments.x); }                      @if counts
+    if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
         $scratch[@totals + id * @record_words] = 0x10001u;
         $scratch[@totals + id * @record_words + 1u] = 0u;
     }
     if (id == 0u) { $scratch[3] = given; }                                                          @if !counts
-    if (id == 0u) { $scratch[3] = given + @given_spots + @given_boxes; }                            @if counts
+    if (id == 0u) { $scratch[3] = @given + @given_spots + @given_boxes; }                            @if counts
     sync_group();
     uint groups = max(($segments.x + 63u) >> 6u, 1u);
     if (number < groups) {

@@ -109,10 +109,7 @@ void $store_half_spaces(uint at, $spot s) {
         if ((i & 1u) != 0u) { n = n * -1.0; }
         n = n * across - s.axis * along;
         float most = slack + n.x * s.ball.x + n.y * s.ball.y + n.z * s.ball.z;
-        $scratch[at + 4u * i] = floatBitsToUint(n.x);
-        $scratch[at + 4u * i + 1u] = floatBitsToUint(n.y);
-        $scratch[at + 4u * i + 2u] = floatBitsToUint(n.z);
-        $scratch[at + 4u * i + 3u] = floatBitsToUint(most);
+        $store_half_space(at + 4u * i, n, most);
     }
 }
 )");
