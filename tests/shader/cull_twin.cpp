@@ -117,6 +117,9 @@ std::vector<uint> p_lights, p_scratch;
 uvec4 p_grid;
 vec4 p_axis_x, p_axis_y, p_signs, p_planes, p_origin, p_column_x, p_column_y, p_column_z, p_origin_image;
 void p_mark(uint, uvec2, uvec2, uvec2) {}
+void p_store_word(uint at, uint word) {
+    p_scratch[at] = word;
+}
 
 #define xyz xyz()
 #define xy xy()

@@ -59,6 +59,9 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
     // The numbers of layers of cells and, with 2^$blocks.w slices each, of mask blocks.
     writer.set("cell_layers", clusters ? "$grid.z" : "1u");
     writer.set("mask_layers", clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u");
+    writer.set("mask_blocks", "($blocks.x * $blocks.y * @mask_layers)");
+    // Behind the masks: the first of the words that say which words of the masks have bits, see add_masks_of_group().
+    writer.set("summaries", "($places.x + (($segments.x + 63u) >> 6u) * 2u * @mask_blocks)");
     writer.set("cells", clusters ? "$grid.x * $grid.y * $grid.z" : "$grid.x * $grid.y");
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"},   {"uvec4", "blocks"}, {"uvec4", "segments"},
                                              {"uvec4", "places"}, {"vec4", "axis_x"},  {"vec4", "axis_y"},
@@ -70,18 +73,19 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
     writer.declare_constants(constants, options.grid, false, 1, true);
 }
 
-inline void declare_scratch(ShaderWriter& writer, const CullOptions& options) {
-    writer.declare_storage("scratch", "uint", "", options.scratch, 4);
+inline void declare_scratch(ShaderWriter& writer, const CullOptions& options, bool atomic = false) {
+    const char* const type = atomic && writer.dialect.webgpu ? "atomic<uint>" : "uint";
+    writer.declare_storage("scratch", type, "", options.scratch, 4);
 }
 
 /// Adds `store_half_space`, which writes what `meets_half_spaces` of cull_lists.hpp reads.
 inline void add_store_half_space(ShaderWriter& writer) {
     writer.add(R"(
 void $store_half_space(uint at, vec3 n, float most) {
-    $scratch[at] = floatBitsToUint(n.x);
-    $scratch[at + 1u] = floatBitsToUint(n.y);
-    $scratch[at + 2u] = floatBitsToUint(n.z);
-    $scratch[at + 3u] = floatBitsToUint(most);
+    $store_word(at, floatBitsToUint(n.x));
+    $store_word(at + 1u, floatBitsToUint(n.y));
+    $store_word(at + 2u, floatBitsToUint(n.z));
+    $store_word(at + 3u, floatBitsToUint(most));
 }
 )");
 }
@@ -93,21 +97,23 @@ inline void add_saturated_sum(ShaderWriter& writer) {
 
 /// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks` before,
 /// `mark` for each light in view, and `write_masks` after. A mask block is a block of tiles, see plan_blocks(), that
-/// has a bitmask of the lights in it, 32 to a word.
+/// has a bitmask of the lights in it, 32 to a word. Of these words only those with bits are written: a word of summary
+/// for each block and 32 words has a bit for each of them. Each group changes the bits of its own two words and no
+/// others, so neither the order of groups nor what was there before makes a difference.
 inline void add_masks_of_group(ShaderWriter& writer) {
     writer.declare_shared("block_bits", 2 * cull_max_blocks, true);
     writer.add(R"(
-uint $block_count() {
-    return $blocks.x * $blocks.y * @mask_layers;
+void $store_word(uint at, uint word) {
+    atomicStore(&$scratch[at], word);
 }
 
 void $clear_masks(uint thread) {
-    uint words = 2u * $block_count();
+    uint words = 2u * @mask_blocks;
     for (uint i = thread; i < words; i += 64u) { atomicStore(&$block_bits[i], 0u); }
 }
 
 void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
-    uint row_begin = (thread >> 5u) * $block_count();
+    uint row_begin = (thread >> 5u) * @mask_blocks;
     uint bit = 1u << (thread & 31u);
     for (uint z = layers.x >> $blocks.w; z <= layers.y >> $blocks.w; z += 1u) {     @if clusters
     {                                                                               @if !clusters
@@ -122,9 +128,21 @@ void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
 }
 
 void $write_masks(uint number, uint thread) {
-    uint words = 2u * $block_count();
-    uint begin = $places.x + number * words;
-    for (uint i = thread; i < words; i += 64u) { $scratch[begin + i] = atomicLoad(&$block_bits[i]); }
+    uint blocks = @mask_blocks;
+    uint begin = $places.x + number * 2u * blocks;
+    uint shift = (number & 15u) * 2u;
+    uint own = 3u << shift;
+    if (number + 1u >= ($segments.x + 63u) >> 6u) { own = 0xffffffffu << shift; }  // no lights follow
+    for (uint i = thread; i < blocks; i += 64u) {
+        uint low = atomicLoad(&$block_bits[i]);
+        uint high = atomicLoad(&$block_bits[blocks + i]);
+        if (low != 0u) { $store_word(begin + i, low); }
+        if (high != 0u) { $store_word(begin + blocks + i, high); }
+        uint at = @summaries + (number >> 4u) * blocks + i;
+        atomicAnd(&$scratch[at], ~own);
+        uint bits = (min(low, 1u) | (min(high, 1u) << 1u)) << shift;
+        if (bits != 0u) { atomicOr(&$scratch[at], bits); }
+    }
 }
 )");
 }

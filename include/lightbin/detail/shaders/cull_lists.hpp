@@ -140,15 +140,21 @@ inline void declare_stage(ShaderWriter& writer) {
 /// bits beyond the last light are 0.
 inline void add_stage(ShaderWriter& writer) {
     writer.add(R"(
+// Returns which of 32 words of a mask block, from word 32 `step` on, have bits.
+uint $summary(uint step, uint mask_block) {
+    uint bits = 0u;
+    if (step < ($segments.x + 1023u) >> 10u) { bits = $scratch[@summaries + step * @mask_blocks + mask_block]; }
+    return bits;
+}
+
 uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
     if (thread < 8u) {
-        uint mask_blocks = $blocks.x * $blocks.y * @mask_layers;
-        uint word_count = (($segments.x + 63u) >> 6u) * 2u;
+        uint summary = $summary(first >> 5u, mask_block) >> (thread * 4u);
         uint counts = 0u;
         for (uint i = 0u; i < 4u; i += 1u) {
             uint own = 0u;
-            uint word = first + thread * 4u + i;
-            if (word < word_count) { own = $scratch[$places.x + word * mask_blocks + mask_block]; }
+            uint at = $places.x + (first + thread * 4u + i) * @mask_blocks + mask_block;
+            if (((summary >> i) & 1u) != 0u) { own = $scratch[at]; }
             $words[thread * 4u + i] = own;
             counts |= uint(bitCount(own)) << (i * 8u);
         }
@@ -230,10 +236,8 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     }
     writer.add("\n");
     declare_stage(writer);
-    if (bounded) {
-        writer.declare_shared("drawn", 1, true);
-        writer.declare_shared("any_drawn", 1, false);
-    }
+    writer.declare_shared("found", 1, true);
+    writer.declare_shared("needed", 1, false);
     if (options.depth_test || bounded) add_cell_depths(writer);
     if (options.depth_test) add_cell_box(writer);
     if (options.depth_test && options.kind != CullKind::sphere) add_half_space_test(writer);
@@ -247,9 +251,9 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     writer.set("tested_record", "@totals + id * @record_words + @tested");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
     // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as slices_of() widens
-    // lights, so that no cell of the Binner's is left out. A group of which no cell is drawn skips all lights.
+    // lights, so that no cell of the Binner's is left out. A group of which no cell is drawn, or whose mask block has
+    // none of the segment's lights, skips all lights.
     writer.set("tile_bounds", "$depths_of($grid.z + $grid.x + $grid.y + tile.y * $grid.x + tile.x)");
-    writer.set("steps", bounded ? "steps" : "$segments.z");
     // Lights that are tested end before the depth 2^42.
     writer.set("least_depth", options.orthographic ? "-4.3980465e12" : "$planes.x");
     writer.add(R"(
@@ -293,13 +297,16 @@ void $run(uvec2 group, uint thread) {
         drawn = drawn && seen.x - abs(seen.x) * $signs.w <= slab.y;         @if bounded
         drawn = drawn && slab.x <= seen.y + abs(seen.y) * $signs.w;         @if bounded
     }                                                                       @if bounded
-    if (thread == 0u) { atomicStore(&$drawn[0], 0u); }                      @if bounded
-    sync_group();                                                           @if bounded
-    if (drawn) { atomicOr(&$drawn[0], 1u); }                                @if bounded
-    sync_group();                                                           @if bounded
-    if (thread == 0u) { $any_drawn[0] = atomicLoad(&$drawn[0]); }           @if bounded
-    sync_group();                                                           @if bounded
-    uint steps = $segments.z * uniform_load(&$any_drawn[0]);                @if bounded
+    if (thread == 0u) { atomicStore(&$found[0], 0u); }
+    sync_group();
+    if (drawn) { atomicOr(&$found[0], 1u); }
+    for (uint step = thread; step < $segments.z; step += 64u) {
+        if ($summary(segment * $segments.z + step, mask_block) != 0u) { atomicOr(&$found[0], 2u); }
+    }
+    sync_group();
+    if (thread == 0u) { $needed[0] = atomicLoad(&$found[0]) / 3u; }
+    sync_group();
+    uint steps = $segments.z * uniform_load(&$needed[0]);
     uint count = 0u;                                                        @if !fill
     uint at = 0u;                                                           @if fill
     if (inside) {                                                           @if fill
@@ -310,7 +317,7 @@ void $run(uvec2 group, uint thread) {
         if (segment == 0u) { $tiles[cell] = uvec2(begin, min(count, $grid.w - begin)); }                @if fill
         at = $sum(base, $scratch[$places.y + segment * cells + cell]);      @if fill
     }                                                                       @if fill
-    for (uint step = 0u; step < @steps; step += 1u) {
+    for (uint step = 0u; step < steps; step += 1u) {
         uint first = (segment * $segments.z + step) * 32u;
         uint staged_words = $stage(first, mask_block, corner, slice, thread);
         for (uint i = 0u; i < staged_words; i += 1u) {

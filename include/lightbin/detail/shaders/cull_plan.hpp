@@ -95,7 +95,7 @@ inline std::uint64_t plan_scratch(const CullOptions& options, std::uint64_t cell
         end += words;
         return static_cast<std::uint32_t>(begin);
     };
-    to.masks = place(2 * groups * to.blocks_x * to.blocks_y * layers);
+    to.masks = place((2 * groups + divided_up(groups, 16)) * to.blocks_x * to.blocks_y * layers);
     to.counts = place(cells * to.segments);
     to.ranges = place(2 * cells);
     to.sums = place(divided_up(cells, 128));

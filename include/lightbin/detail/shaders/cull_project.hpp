@@ -258,7 +258,7 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     writer.set("given_boxes", count_at(2));
     writer.set({{"counts", mixed && options.count_in_buffer}});
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
-    declare_scratch(writer, options);
+    declare_scratch(writer, options, true);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
     if (options.count_in_buffer) writer.declare_storage("light_count", "uint", "readonly", options.light_count, 4);
     writer.add("\n");
@@ -332,17 +332,17 @@ uint $project(uint id, uint thread) {
         columns = uvec2(1u, 0u);
         rows = columns;
     }
-    $scratch[record] = columns.x | (rows.x << 16u);
-    $scratch[record + 1u] = columns.y | (rows.y << 16u);
+    $store_word(record, columns.x | (rows.x << 16u));
+    $store_word(record + 1u, columns.y | (rows.y << 16u));
     uvec2 layers = uvec2(0u, 0u);                                           @if !clusters
     uvec2 layers = $slices_of(z);                                           @if clusters
     if (state == 1u) { layers = uvec2(0u, $slices[3]); }                    @if clusters
-    $scratch[record + 2u] = layers.x | (layers.y << 16u);                   @if clusters
+    $store_word(record + 2u, layers.x | (layers.y << 16u));                 @if clusters
     if (!bounded) { s.w = -1.0; }                                           @if depth_test
-    $scratch[record + @tested + 0u] = floatBitsToUint(s.x);                 @if depth_test
-    $scratch[record + @tested + 1u] = floatBitsToUint(s.y);                 @if depth_test
-    $scratch[record + @tested + 2u] = floatBitsToUint(s.z);                 @if depth_test
-    $scratch[record + @tested + 3u] = floatBitsToUint(s.w);                 @if depth_test
+    $store_word(record + @tested + 0u, floatBitsToUint(s.x));               @if depth_test
+    $store_word(record + @tested + 1u, floatBitsToUint(s.y));               @if depth_test
+    $store_word(record + @tested + 2u, floatBitsToUint(s.z));               @if depth_test
+    $store_word(record + @tested + 3u, floatBitsToUint(s.w));               @if depth_test
     if (seen) { $mark(thread, columns, rows, layers); }
     uint result = 0u;
     if (seen) { result = 0x10000u; }
@@ -361,15 +361,15 @@ void $run(uvec2 group, uint thread) {
     if (id >= $kinds.y) { given = $kinds.y + min(@given_boxes, $segments.x); }                      @if counts
     if (id < min(given, $segments.x)) { atomicAdd(&$tally[0], $project(id, thread)); }
     else if (id < $segments.x) {
-        $scratch[@totals + id * @record_words] = 0x10001u;
-        $scratch[@totals + id * @record_words + 1u] = 0u;
+        $store_word(@totals + id * @record_words, 0x10001u);
+        $store_word(@totals + id * @record_words + 1u, 0u);
     }
-    if (id == 0u) { $scratch[3] = given; }                                                          @if !counts
-    if (id == 0u) { $scratch[3] = @given + @given_spots + @given_boxes; }                            @if counts
+    if (id == 0u) { $store_word(3u, given); }                                                       @if !counts
+    if (id == 0u) { $store_word(3u, @given + @given_spots + @given_boxes); }                        @if counts
     sync_group();
     uint groups = max(($segments.x + 63u) >> 6u, 1u);
     if (number < groups) {
-        if (thread == 0u) { $scratch[$segments.w + number] = atomicLoad(&$tally[0]); }
+        if (thread == 0u) { $store_word($segments.w + number, atomicLoad(&$tally[0])); }
         $write_masks(number, thread);
     }
 }
