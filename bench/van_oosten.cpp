@@ -42,8 +42,7 @@ constexpr Options tile_options = {.depth_test = true},
 
 /// A row of his tables, in milliseconds; 0 is what he did not measure.
 struct Published {
-    bool
-        grows;  ///< whether the box grows with the number of lights, so that there is one in a unit of volume
+    bool grows;  ///< whether the box grows with the number of lights: there is one in a unit of volume
     std::size_t lights;
     double tiled, volume, sort, build, assign;
 
@@ -217,8 +216,7 @@ public:
     bool right() const { return check_.wrong == 0 && on_gpu_.right(); }
     std::string checked() const {
         return text("Lists: %zu of %zu entries of exact sets are wrong, %.1f %% are more; by shader_cull, "
-                    "%zu of %zu "
-                    "are missed, %zu are out of order.\n",
+                    "%zu of %zu are missed, %zu are out of order.\n",
                     check_.wrong, check_.exact, 100 * double(check_.more) / double(check_.exact),
                     on_gpu_.missed, on_gpu_.entries, on_gpu_.unordered) +
                gpu_said_;
