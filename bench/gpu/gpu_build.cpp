@@ -4,6 +4,7 @@
 #include <value_of.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace {
@@ -100,6 +101,36 @@ double GpuBuild::upload(const GpuFrame& frame) {
     const auto constants = bytes_of(std::span(&plan_.constants, 1));
     const double milliseconds = device_.write("grid", constants);
     return frame.to_view ? milliseconds : milliseconds + device_.write("lights", bytes_of(frame.lights));
+}
+
+double GpuBuild::tests_a_light() {
+    const lightbin::CullConstants& c = plan_.constants;
+    const auto scratch = device_.read("scratch", std::size_t(plan_.bytes.scratch / 4));
+    const std::uint32_t blocks = c.blocks_x * c.blocks_y * (((c.slices - 1) >> c.slice_shift) + 1),
+                        steps = (c.lights + 1023) / 1024;
+    const std::uint32_t *const words = &scratch[c.masks], *const summaries = words + (c.lights + 63) / 64 * 2 * blocks;
+    double tests = 0;
+    const auto add_group = [&](std::uint32_t block, std::uint32_t first, std::uint32_t end) {
+        int found = 0;
+        for (std::uint32_t step = first; step < end; ++step) {
+            int lights = 0;
+            for (std::uint32_t word = 0; word < 32; ++word)
+                if (summaries[step * blocks + block] >> word & 1) {
+                    ++found;
+                    lights += std::popcount(words[(32 * step + word) * blocks + block]);
+                }
+            tests += lights + 8 * lights + 64 * ((lights + 31) / 32);
+        }
+        tests += found + (found > 0 ? 2 : 1) * double(end - first);  // a group with lights reads its summaries twice
+    };
+    for (std::uint32_t slice = 0; slice < c.slices; ++slice)
+        for (std::uint32_t y = 0; y < c.tiles_y; y += 8)
+            for (std::uint32_t x = 0; x < c.tiles_x; x += 8)
+                for (std::uint32_t first = 0; first < steps; first += c.steps)
+                    add_group(((slice >> c.slice_shift) * c.blocks_y + (y >> c.block_shift)) * c.blocks_x +
+                                  (x >> c.block_shift),
+                              first, std::min(first + c.steps, steps));
+    return 2 * tests / std::max(1u, scratch[2]);
 }
 
 ReadLists GpuBuild::read() {

@@ -40,6 +40,10 @@ public:
     /// See GpuDevice::run().
     std::vector<double> run(bool each_pass) { return device_.run(each_pass); }
     ReadLists read();
+    /// After run(), of lists: how many tests `count` and `fill` made together for each light in view. A test is a word of
+    /// a mask or of its summary that a work group reads, a rectangle that it compares with its tiles, a staged light
+    /// that an invocation looks at for a column and a row, or a word of a column AND one of a row.
+    double tests_a_light();
 
     const lightbin::CullPlan& plan() const { return plan_; }
 

@@ -142,8 +142,9 @@ inline void add_stage(ShaderWriter& writer) {
     writer.add(R"(
 // Returns which of 32 words of a mask block, from word 32 `step` on, have bits.
 uint $summary(uint step, uint mask_block) {
+    uint steps = ($segments.x + 1023u) >> 10u;
     uint bits = 0u;
-    if (step < ($segments.x + 1023u) >> 10u) { bits = $scratch[@summaries + step * @mask_blocks + mask_block]; }
+    if (step < steps) { bits = $scratch[@summaries + step * @mask_blocks + mask_block]; }
     return bits;
 }
 
@@ -300,8 +301,8 @@ void $run(uvec2 group, uint thread) {
     if (thread == 0u) { atomicStore(&$found[0], 0u); }
     sync_group();
     if (drawn) { atomicOr(&$found[0], 1u); }
-    for (uint step = thread; step < $segments.z; step += 64u) {
-        if ($summary(segment * $segments.z + step, mask_block) != 0u) { atomicOr(&$found[0], 2u); }
+    for (uint i = thread; i < $segments.z; i += 64u) {
+        if ($summary(segment * $segments.z + i, mask_block) != 0u) { atomicOr(&$found[0], 2u); }
     }
     sync_group();
     if (thread == 0u) { $needed[0] = atomicLoad(&$found[0]) / 3u; }
