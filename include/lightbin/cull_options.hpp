@@ -45,20 +45,20 @@ constexpr const char* to_string(CullKind value) {
     return detail::name_at(value, {"sphere", "spot", "box", "mixed"});
 }
 
-/// Where the numbers of a light lie in the caller's buffer, in words of 32 bits. The defaults are those of an array of
-/// Sphere, or of vec4s, and with CullKind::mixed those of arrays of Sphere, Spot and Box. An array of Spot alone has
-/// the stride 8, one of Box 17.
+/// Where the numbers of a light lie in the caller's buffer: how many words of 32 bits after the light's first word. The
+/// defaults are for an array of Sphere, or of vec4s, and with CullKind::mixed for arrays of Sphere, Spot and Box. For
+/// an array of Spot alone set the stride to 8, for one of Box to 17.
 struct CullLayout {
     std::uint32_t stride = 4;  ///< from one light to the next
     std::uint32_t centre = 0;  ///< x, y and z, side by side
     std::uint32_t radius = 3;
-    std::uint32_t axis = 4;         ///< spots: x, y and z of the axis, side by side
-    std::uint32_t cosine = 7;       ///< spots: the cosine of the half angle
-    std::uint32_t box_centre = 4;   ///< boxes: x, y and z, side by side
-    std::uint32_t half_axes = 7;    ///< boxes: the nine numbers of the half axes, side by side
-    std::uint32_t taper = 16;       ///< boxes
-    std::uint32_t spot_stride = 8;  ///< CullKind::mixed: from one spot to the next; `stride` is that of spheres
-    std::uint32_t box_stride = 17;  ///< CullKind::mixed: from one box to the next
+    std::uint32_t axis = 4;         ///< of a spot: the first of the three words x, y and z of its axis
+    std::uint32_t cosine = 7;       ///< of a spot: the cosine of its half angle
+    std::uint32_t box_centre = 4;   ///< of a box: the first of the three words of its centre
+    std::uint32_t half_axes = 7;    ///< of a box: the first of the nine words of its half axes
+    std::uint32_t taper = 16;       ///< of a box: Box::taper
+    std::uint32_t spot_stride = 8;  ///< with CullKind::mixed, words from one spot to the next; `stride` is for spheres
+    std::uint32_t box_stride = 17;  ///< with CullKind::mixed, words from one box to the next
 };
 
 /// What cull_shader() generates. All passes of a build need the same options, those of CullPass apart. Every device
@@ -92,10 +92,11 @@ struct CullOptions {
 
 /// The numbers of lights and of list entries that the caller's buffers have room for.
 struct CullCapacity {
-    /// With count_in_buffer the greatest number of lights, else the number of lights; of spheres with CullKind::mixed.
+    /// The number of lights, or with count_in_buffer the greatest number that there may be. With CullKind::mixed this
+    /// counts the spheres alone.
     std::uint32_t lights = 0;
     std::uint32_t entries = 0;  ///< ids that fit in `lists`
-    std::uint32_t spots = 0, boxes = 0;  ///< the same as `lights` of spots and boxes, with CullKind::mixed
+    std::uint32_t spots = 0, boxes = 0;  ///< with CullKind::mixed, the same for spots and for boxes
 };
 
 /// The values of the constants. The uniform block `grid` has this layout, a vec4 or uvec4 a line.
@@ -103,9 +104,10 @@ struct CullConstants {
     std::uint32_t tiles_x, tiles_y, slices, entries;  // slices: of clusters, else 1; CullCapacity::entries
     /// Columns and rows of mask blocks; log2 of the tiles along a block's side, and of the slices in a block.
     std::uint32_t blocks_x, blocks_y, block_shift, slice_shift;
-    // The lights that there is room for; the segments of lights, and the steps of 1024 lights in each. Then where
-    // arrays begin in `scratch`, in words: counts of groups of lights, masks, counts of cells, ranges of cells, and
-    // sums of ranges. The lights themselves are behind CullTotals.
+    // How many lights there is room for, how many segments they are divided into, and how many steps of 1024 lights a
+    // segment has. The others are indices of words in `scratch` at which its arrays begin: a count for each 64 lights,
+    // the masks of blocks, a count for each cell and segment, the range of each cell's list, and a sum for each 128
+    // ranges. The array of lights begins behind CullTotals.
     std::uint32_t lights, segments, steps, groups;
     std::uint32_t masks, counts, ranges, sums;
     // The image axes, in tiles, as in ImageAxis. The margins are those of the GPU's arithmetic.
@@ -119,7 +121,8 @@ struct CullConstants {
     float column_y[3], error_at_origin;
     float column_z[3], cone_error;
     float origin_image[3], max_distance;
-    // Of CullKind::mixed: the ids of the first spot and box, and the words of the buffer `lights` where they begin.
+    // With CullKind::mixed: the ids of the first spot and the first box, and the indices of the words in the buffer
+    // `lights` at which they begin.
     std::uint32_t first_spot, first_box, spots_at, boxes_at;
 };
 static_assert(sizeof(CullConstants) == 14 * 16);  // it has no padding

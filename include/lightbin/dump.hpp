@@ -185,7 +185,8 @@ std::string dump(const Binner<options>&, const LightGrid<typename Binner<options
     return detail::dump(view, detail::as_lights(lights), {options, slices, inputs.bounds}, grid);
 }
 
-/// Returns a frame whose masks a MaskBinner made as text, in the same way.
+/// Returns as text, in the same form, a frame for which MaskBinner::bin() made masks. If that call was given slices,
+/// pass them here, too.
 template <class LightRange> std::string dump(const LightMasks& masks, const View& view, const LightRange& lights) {
     return detail::dump(view, detail::as_lights(lights), nullptr, masks);
 }

@@ -29,8 +29,8 @@ constexpr unsigned cull_threads(CullPass pass) {
     return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
 }
 
-/// Where what the depth test reads of a light ends: its sphere, and the half spaces around a spot, or around a box, for
-/// which there are two more for its depths if there are no slices.
+/// Returns how many words the depth test reads of a light: four for its sphere, and four for each half space around a
+/// spot (4 half spaces) or a box (6, and without slices 2 more for its depths).
 inline std::uint32_t cull_half_spaces_end(CullKind kind, Slicing slicing) {
     return kind == CullKind::sphere ? 4u : kind == CullKind::spot ? 20u : slicing == Slicing::none ? 36u : 28u;
 }
@@ -78,7 +78,8 @@ inline void declare_scratch(ShaderWriter& writer, const CullOptions& options, bo
     writer.declare_storage("scratch", type, "", options.scratch, 4);
 }
 
-/// Adds `store_half_space`, which writes what `meets_half_spaces` of cull_lists.hpp reads.
+/// Adds the function `store_half_space`. It writes the points p with  n.p <= most  to four words of `scratch`, which
+/// the passes count and fill compare with cells.
 inline void add_store_half_space(ShaderWriter& writer) {
     writer.add(R"(
 void $store_half_space(uint at, vec3 n, float most) {

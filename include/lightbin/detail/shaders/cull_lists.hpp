@@ -279,18 +279,16 @@ void $run(uvec2 group, uint thread) {
     if (inside) { z = $depths_of(slice); }                                  @if depth_test clusters
     bool drawn = inside && z.x <= z.y;                                      @if depth_test
     z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, @least_depth), $planes.z));   @if depth_test
-    vec2 columns = vec2(0.0, 0.0);                                          @if depth_test
-    vec2 rows = vec2(0.0, 0.0);                                             @if depth_test
-    vec2 x_sides = columns;                                                 @if depth_test shapes
-    vec2 y_sides = columns;                                                 @if depth_test shapes
+    vec2 x_sides = vec2(0.0, 0.0);                                          @if depth_test
+    vec2 y_sides = x_sides;                                                 @if depth_test
     if (drawn) {                                                            @if depth_test
         uint sides = $grid.x * $grid.y;                                     @if depth_test !clusters
         uint sides = $grid.z;                                               @if depth_test clusters
-        columns = $across($z_bounds[sides + tile.x], z);                    @if depth_test
-        rows = $across($z_bounds[sides + $grid.x + tile.y], z);             @if depth_test
-        x_sides = $z_bounds[sides + tile.x];                                @if depth_test shapes
-        y_sides = $z_bounds[sides + $grid.x + tile.y];                      @if depth_test shapes
+        x_sides = $z_bounds[sides + tile.x];                                @if depth_test
+        y_sides = $z_bounds[sides + $grid.x + tile.y];                      @if depth_test
     }                                                                       @if depth_test
+    vec2 columns = $across(x_sides, z);                                     @if depth_test
+    vec2 rows = $across(y_sides, z);                                        @if depth_test
     if (inside) {                                                           @if bounded
         vec2 slab = $depths_of(slice);                                      @if bounded
         vec2 seen = @tile_bounds;                                           @if bounded
