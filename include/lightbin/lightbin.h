@@ -345,11 +345,19 @@ typedef struct lightbin_boxes {
     lightbin_floats taper;
 } lightbin_boxes;
 
+/* Lights whose floats lie as in an array of these structs are read without a copy. */
+typedef struct lightbin_sphere {
+    float centre[3], radius;
+} lightbin_sphere;
+typedef struct lightbin_spot {
+    float centre[3], radius, axis[3], cosine;
+} lightbin_spot;
+typedef struct lightbin_box {
+    float centre[3], radius, box_centre[3], half_axes[9], taper;
+} lightbin_box;
+
 /* The lights of a call. Ids number the arrays through: the id of a sphere is its position in its array, ids of spots
- * begin behind those of the spheres, and ids of boxes behind those of the spots.
- *
- * Lights whose floats lie as in an array of lightbin_sphere (as vec4s do), lightbin_spot or lightbin_box are read
- * without a copy. */
+ * begin behind those of the spheres, and ids of boxes behind those of the spots. */
 typedef struct lightbin_lights {
     uint32_t size;
     uint32_t unused;
@@ -967,72 +975,6 @@ LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, li
                                                    size_t* count);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity, size_t* count);
-
-/* ---- Shapes ----
- *
- * These functions make lights of shapes that engines have. Bad input, such as NaN, gives a light with a negative
- * radius, which is skipped and counted, and not an error. Each result is rounded outward: it contains the whole shape.
- */
-
-/* A light of each kind. In arrays of these structs, or in structs that hold them, lightbin_floats refer to their
- * members. They are what lightbin_spheres, lightbin_spots and lightbin_boxes describe. */
-typedef struct lightbin_sphere {
-    float centre[3], radius;
-} lightbin_sphere;
-typedef struct lightbin_spot {
-    float centre[3], radius, axis[3], cosine;
-} lightbin_spot;
-/* To cut a box by a light's sphere, as where the walls of a room stop the light, set centre and radius to the light's.
- */
-typedef struct lightbin_box {
-    float centre[3], radius, box_centre[3], half_axes[9], taper;
-} lightbin_box;
-
-/* Computes the least sphere that contains a spot. With half angles of 90 degrees or more it is the spot's own. */
-LIGHTBIN_API lightbin_result lightbin_spot_sphere(const lightbin_spot* spot, lightbin_sphere* sphere);
-
-/* Computes a sphere that contains a box: the box's own or, if smaller, one around its corners. */
-LIGHTBIN_API lightbin_result lightbin_box_sphere(const lightbin_box* box, lightbin_sphere* sphere);
-
-/* Computes the least sphere that contains all points within `radius` of the line from a to b. */
-LIGHTBIN_API lightbin_result lightbin_tube_sphere(const float a[3], const float b[3], float radius,
-                                                  lightbin_sphere* sphere);
-
-/* Computes the least sphere that contains all points within `range` of a rectangle, such as an area light. The half
- * axes are vectors from its centre to the middles of two adjacent sides. */
-LIGHTBIN_API lightbin_result lightbin_rectangle_sphere(const float centre[3], const float half_x[3],
-                                                       const float half_y[3], float range, lightbin_sphere* sphere);
-
-/* Makes a whole box, such as a decal's or a reflection probe's, with a sphere around its corners.
- *
- * half_axes  three vectors, one after another, from the centre to the middles of three faces */
-LIGHTBIN_API lightbin_result lightbin_oriented_box(const float centre[3], const float half_axes[9], lightbin_box* box);
-
-/* Makes a whole box of the image of a cube under an affine transform, as engines keep decals and probes.
- *
- * transform  from the cube's space to that of the lights
- * half_side  half of the cube's side: 1 for the cube from -1 to 1, 0.5 for the cube from -0.5 to 0.5 */
-LIGHTBIN_API lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side, lightbin_box* box);
-
-/* Makes a box of the half of a sphere where an area light shines. A sphere that reaches beyond the range of floats, as
- * with an infinite radius, is kept whole.
- *
- * direction  towards the half that is kept, of any length but zero */
-LIGHTBIN_API lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float direction[3],
-                                                  lightbin_box* box);
-
-/* Makes a box of the frustum that a projector lights.
- *
- * eye             where the projector's rays meet
- * forward         vector from the eye to the middle of the far face
- * half_x, half_y  vectors from there to the middles of two sides of the far face
- * begin           where the frustum begins, as a fraction of `forward`: 0 for the whole pyramid, below 1 */
-LIGHTBIN_API lightbin_result lightbin_projector_box(const float eye[3], const float forward[3], const float half_x[3],
-                                                    const float half_y[3], double begin, lightbin_box* box);
-
-/* Makes a box, cut by lightbin_tube_sphere(), that contains all points within `radius` of the line from a to b. It is
- * listed in fewer tiles than that sphere. */
-LIGHTBIN_API lightbin_result lightbin_tube_box(const float a[3], const float b[3], float radius, lightbin_box* box);
 
 /* ---- Lights' ranges ---- */
 

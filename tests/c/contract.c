@@ -456,29 +456,6 @@ static void test_masks(void) {
     lightbin_view_destroy(view);
 }
 
-/* Lights that are made of shapes. */
-static void test_shapes(void) {
-    const float a[3] = {0, 0, -5}, b[3] = {4, 0, -5};
-    lightbin_matrix cube;
-    lightbin_sphere sphere;
-    lightbin_box box;
-    memset(&cube, 0, sizeof cube);
-    memset(&sphere, 0, sizeof sphere);
-    NEEDS(lightbin_cube_box(&cube, 0.5, &box), "transform");
-    cube.floats = projection;
-    CHECK(lightbin_tube_box(a, b, -2, &box).error == LIGHTBIN_OK && box.radius < 0); /* a bad light, no error */
-    NEEDS(lightbin_spot_sphere(NULL, &sphere), "spot");
-    NEEDS(lightbin_box_sphere(&box, NULL), "sphere");
-    NEEDS(lightbin_tube_sphere(a, NULL, 1, &sphere), "b");
-    NEEDS(lightbin_rectangle_sphere(a, b, NULL, 1, &sphere), "half_y");
-    NEEDS(lightbin_oriented_box(a, NULL, &box), "half_axes");
-    NEEDS(lightbin_cube_box(&cube, 1, NULL), "box");
-    NEEDS(lightbin_cube_box(NULL, 1, &box), "transform");
-    NEEDS(lightbin_half_sphere(&sphere, NULL, &box), "direction");
-    NEEDS(lightbin_projector_box(a, b, a, NULL, 0, &box), "half_y");
-    NEEDS(lightbin_tube_box(NULL, b, 1, &box), "a");
-}
-
 /* What is made of finished grids: several views in one memory. */
 static void test_grids(void) {
     lightbin_view_options view_given = view_options();
@@ -770,7 +747,6 @@ int main(void) {
     test_slices();
     test_binners();
     test_masks();
-    test_shapes();
     test_grids();
     test_depth();
     test_snippet();

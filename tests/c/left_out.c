@@ -39,7 +39,6 @@ int main(void) {
     lightbin_grid grid = {.size = sizeof grid};
     lightbin_view* view = NULL;
     lightbin_binner* binner = NULL;
-    lightbin_sphere sphere;
     works(lightbin_view_create(&view_options, &view));
     works(lightbin_binner_create(NULL, &binner));
     works(lightbin_bin(binner, view, &given, NULL, &grid));
@@ -60,7 +59,6 @@ int main(void) {
     given.boxes.box_centre.first = lights;
     given.boxes.half_axes.first = half_axes;
     refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
-    works(lightbin_tube_sphere(lights, lights + 4, 1, &sphere));
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
     puts("every check passed");

@@ -556,6 +556,8 @@ TEST_CASE("C: the data that shaders read is that of C++") {
     lightbin_reduce_constants reduce;
     works(lightbin_get_reduce_constants(view.get(), 3, 4, &reduce));
     CHECK(same(reduce, reduce_constants(cpp_view, 3, 4)));
+    CHECK(lightbin_light_range(100, 0.01f) == light_range(100, 0.01f));
+    CHECK(lightbin_light_window(1, 3) == light_window(1, 3));
     CHECK(lightbin_slices_at(slices.get(), 30) == cpp_slices.slice_at(30));
     CHECK(equal(cpp_slices.boundaries(), lightbin_slices_boundaries(slices.get()), 8));
     std::vector<std::uint32_t> words(12);
@@ -636,44 +638,6 @@ TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are
         }
     static_assert(sizeof(lightbin_cull_totals) == sizeof(CullTotals));
     static_assert(offsetof(lightbin_cull_totals, visible) == offsetof(CullTotals, visible));
-}
-
-TEST_CASE("C: shapes are the lights of C++") {
-    struct Point {
-        float x, y, z;
-    };
-    constexpr float v[4][3] = {{1, 2, -9}, {3, 0.5f, -7}, {0.25f, -2, 1}, {-1, 1, 2}},
-                    transform[16] = {2, 0, 0.5f, 0, 0, 3, 0, 0, 1, 0, 1.5f, 0, 4, 5, -6, 1};
-    constexpr Point p[4] = {{1, 2, -9}, {3, 0.5f, -7}, {0.25f, -2, 1}, {-1, 1, 2}};
-    const lightbin_spot spot = {{1, 2, -9}, 3, {3, 0.5f, -7}, 0.8f};
-    const lightbin_sphere ball = {{1, 2, -9}, 3};
-    const lightbin_matrix numbers = {transform, nullptr, LIGHTBIN_ROW_VECTORS, 0};
-    lightbin_sphere sphere;
-    lightbin_box box;
-    works(lightbin_spot_sphere(&spot, &sphere));
-    CHECK(same(sphere, bounding_sphere(Spot{1, 2, -9, 3, 3, 0.5f, -7, 0.8f})));
-    works(lightbin_tube_sphere(v[0], v[1], 2, &sphere));
-    CHECK(same(sphere, tube_sphere(p[0], p[1], 2)));
-    works(lightbin_rectangle_sphere(v[0], v[1], v[2], 2, &sphere));
-    CHECK(same(sphere, rectangle_sphere(p[0], p[1], p[2], 2)));
-    works(lightbin_tube_box(v[0], v[1], 2, &box));
-    CHECK(same(box, tube_box(p[0], p[1], 2)));
-    works(lightbin_half_sphere(&ball, v[1], &box));
-    CHECK(same(box, half_sphere(Sphere{1, 2, -9, 3}, p[1])));
-    works(lightbin_projector_box(v[0], v[1], v[2], v[3], 0.25, &box));
-    CHECK(same(box, projector_box(p[0], p[1], p[2], p[3], 0.25)));
-    works(lightbin_cube_box(&numbers, 0.5, &box));
-    CHECK(same(box, oriented_box(matrix(transform, MatrixLayout::row_vectors), 0.5)));
-    const Box whole = oriented_box(p[0], p[1], p[2], p[3]);
-    float half_axes[9];
-    std::memcpy(half_axes, v[1], sizeof half_axes);
-    works(lightbin_oriented_box(v[0], half_axes, &box));
-    CHECK(same(box, whole));
-    box.radius = 1;
-    works(lightbin_box_sphere(&box, &sphere));
-    CHECK(same(sphere, bounding_sphere(clipped_sphere({box.centre[0], box.centre[1], box.centre[2], 1}, whole))));
-    CHECK(lightbin_light_range(100, 0.01f) == light_range(100, 0.01f));
-    CHECK(lightbin_light_window(1, 3) == light_window(1, 3));
 }
 
 TEST_CASE("C: each error of the C++ side has its sentence") {

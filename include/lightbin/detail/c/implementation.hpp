@@ -15,7 +15,6 @@
 #endif
 
 #include <lightbin/detail/c/grids.hpp>
-#include <lightbin/detail/c/shapes.hpp>
 #if !defined(LIGHTBIN_NO_DUMP)
 #include <lightbin/detail/c/dumps.hpp>
 #endif
