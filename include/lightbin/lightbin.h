@@ -89,7 +89,6 @@ typedef enum lightbin_error {
     LIGHTBIN_BUFFER_TOO_SMALL = 10,
     /* A grid is not at the beginning of the memory that another is copied behind it in */
     LIGHTBIN_OTHER_MEMORY = 11,
-    LIGHTBIN_NO_SUCH_ISA = 12, /* an instruction set that this machine, or the library as it is compiled, lacks */
 
     LIGHTBIN_MATRIX_NOT_FINITE = 100,
     LIGHTBIN_NOT_A_PROJECTION = 101,
@@ -168,18 +167,6 @@ LIGHTBIN_API size_t lightbin_error_text(lightbin_result result, char* text, size
 
 /* Returns the version of the library that implements these functions, as 10000 * major + 100 * minor + patch. */
 LIGHTBIN_API uint32_t lightbin_version(void);
-
-/* Instruction sets: the kernels of all of them give the same bytes. */
-typedef enum lightbin_isa {
-    LIGHTBIN_WIDEST = 0,  /* as an option: what lightbin_machine_isa() returns */
-    LIGHTBIN_SCALAR = 1,  /* no vectors, one number at a time */
-    LIGHTBIN_SIMD128 = 2, /* vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly */
-    LIGHTBIN_AVX2 = 3,
-    LIGHTBIN_AVX512 = 4 /* with VBMI2 and BITALG: Ice Lake, Zen 4 and later */
-} lightbin_isa;
-
-/* Returns the widest instruction set that the library is compiled for and this machine runs. */
-LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
 
 /* ---- Matrices and views ---- */
 
@@ -433,8 +420,6 @@ typedef struct lightbin_depth_buffer {
     /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. For opaque
      * surfaces alone: transparent ones are seen in front of the background, too. */
     int32_t skip_background;
-    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the bounds are the same */
-    int32_t unused;
 } lightbin_depth_buffer;
 
 /* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row. Where a pointer
@@ -452,7 +437,7 @@ typedef struct lightbin_z_bounds {
  * min, max  arrays of `tiles` floats that become lightbin_z_bounds::min and max; null: this bound is not wanted
  *
  * Errors: LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
- * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles; LIGHTBIN_NO_SUCH_ISA. */
+ * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles. */
 LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
                                                    float* min, float* max, size_t tiles);
 
@@ -481,7 +466,6 @@ typedef struct lightbin_binner_options {
      * tile between them. Needs Z bounds, or clusters, whose cells lie between the depths of a slice. */
     int32_t depth_test;
     int32_t slicing; /* a lightbin_slicing */
-    int32_t isa;     /* a lightbin_isa: use no wider instructions than these; the lists are the same */
 } lightbin_binner_options;
 
 /* Bins lights into tiles, and keeps the memory that this takes. */
@@ -489,9 +473,7 @@ typedef struct lightbin_binner lightbin_binner;
 
 /* Makes a binner. On success *binner is the binner, to be freed with lightbin_binner_destroy().
  *
- * options    null: the defaults, all 0
- *
- * Errors: LIGHTBIN_NO_SUCH_ISA. */
+ * options  null: the defaults, all 0 */
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options, lightbin_binner** binner);
 LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
 

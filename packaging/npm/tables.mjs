@@ -54,7 +54,7 @@ for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.
 }
 
 // Members that the package leaves out, so that JavaScript refuses their names.
-const left_out = /^(unused.*|isa)$/;
+const left_out = /^unused/;
 
 const used = new Set(Object.keys(structs).filter(named)), used_enums = new Set();
 for (const name of used)  // which grows as structs in structs are found

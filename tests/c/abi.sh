@@ -79,7 +79,7 @@ for body in re.findall(r"enum class \w+ : std::uint8_t \{(.*?)\}", cpp, re.S):
         number = int(given or number + 1)
         values[value] = number
     in_cpp.append(values)
-in_c_alone = {"LIGHTBIN_WIDEST", *names[:names.index("LIGHTBIN_MATRIX_NOT_FINITE")], names[-1]}
+in_c_alone = {*names[:names.index("LIGHTBIN_MATRIX_NOT_FINITE")], names[-1]}
 for name, body in re.findall(r"typedef enum lightbin_(\w+) \{(.*?)\}", plain, re.S):
     values = [value for value in re.findall(r"(\w+) = (\d+)", body) if value[0] not in in_c_alone]
     bare = {re.sub("^lightbin_(resource_|cull_)?", "", value.lower()).replace("no_slicing", "none"): int(number)

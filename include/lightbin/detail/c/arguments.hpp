@@ -7,7 +7,6 @@
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/detail/base/platform.hpp>
-#include <lightbin/isa.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 
@@ -46,9 +45,8 @@ inline constexpr const char* sentences[] = {
      "in view space no matrix"),
     "this memory holds {available} elements, and {needed} are needed",
     "this grid must be in the memory that the next view's lists are to be copied to, at its beginning",
-    "this machine does not run these vectors, or the library was compiled without them",
 };
-static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_NO_SUCH_ISA + 1);
+static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_OTHER_MEMORY + 1);
 
 /// Returns an English sentence for a result, with its name and numbers filled in.
 inline Text text_of(const lightbin_result& result) {
@@ -59,7 +57,7 @@ inline Text text_of(const lightbin_result& result) {
         text.append(result.name);
         text.append(": ");
     }
-    const bool known = 0 <= result.error && result.error <= LIGHTBIN_NO_SUCH_ISA;
+    const bool known = 0 <= result.error && result.error <= LIGHTBIN_OTHER_MEMORY;
     text.append(Error{ErrorCode{}, result.needed, result.available}
                     .message(known ? sentences[result.error] : "unknown error")
                     .c_str());
@@ -134,13 +132,6 @@ inline lightbin_result read_member(const lightbin_matrix& given, Matrix& known, 
     const auto layout = static_cast<MatrixLayout>(given.layout);
     known = given.floats != nullptr ? matrix(given.floats, layout) : matrix(given.doubles, layout);
     return succeeded();
-}
-/// Reads the instruction set that a caller asks for, which this build must have and this machine must run.
-inline lightbin_result read_member(std::int32_t given, Isa& known, const char* name) {
-    const lightbin_result result = read_member<Isa>(given, known, name);
-    return result.error != LIGHTBIN_OK || given == LIGHTBIN_WIDEST || machine_isa(known) == known
-               ? result
-               : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
 /// Copies the member `name` of the C struct `given` to the C++ struct `known`. Returns why its value is refused, or a
 /// success.

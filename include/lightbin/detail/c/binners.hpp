@@ -70,9 +70,8 @@ struct AnyHow {
 
 struct lightbin_binner {
     lightbin::c::AnyHow how;
-    lightbin::Isa isa;
     lightbin::detail::Stages<lightbin::c::AnyHow> stages = {};
-    lightbin::MaskBinner masks{isa};
+    lightbin::MaskBinner masks = {};
 };
 
 namespace lightbin {
@@ -125,7 +124,6 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
     using namespace lightbin::c;
     lightbin_binner_options given = {};
     lightbin::Options known;
-    lightbin::Isa isa = lightbin::compiled_isa;
     lightbin_result result = check_pointers({{binner, "binner"}});
     if (result.error == LIGHTBIN_OK && options != nullptr) result = read(options, given, "options");
     if (result.error == LIGHTBIN_OK)
@@ -134,12 +132,11 @@ lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                 result = first_error(result, read_member(from, to, name));
             },
             given, known);
-    if (result.error == LIGHTBIN_OK) result = read_member(given.isa, isa, "options.isa");
     if (result.error == LIGHTBIN_OK && known.ids == lightbin::IdWidth::u8)
         result = not_a_value(given.ids, "options.ids");
     if (const char* const define = left_out(known); result.error == LIGHTBIN_OK && define != nullptr)
         result = refused(LIGHTBIN_LEFT_OUT, define);
-    return call_if(result, [&] { return make_handle(binner, AnyHow{known}, isa); });
+    return call_if(result, [&] { return make_handle(binner, AnyHow{known}); });
 }
 
 void lightbin_binner_destroy(lightbin_binner* binner) {
@@ -160,7 +157,7 @@ lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
     return call_if(result, [&] {
         const auto bin = [&]<class Id>(Id) {
             const auto made = binner->stages.template bin<Id>(
-                binner->how, binner->isa, view->value, lights.all(),
+                binner->how, lightbin::compiled_isa, view->value, lights.all(),
                 inputs.slices != nullptr ? &inputs.slices->value : nullptr, bounds, lightbin::detail::Serial());
             return made ? write_grid(*made, grid) : refused(made.error());
         };

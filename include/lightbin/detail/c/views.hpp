@@ -86,10 +86,6 @@ std::size_t lightbin_error_text(lightbin_result result, char* text, std::size_t 
     return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
 }
 
-lightbin_isa lightbin_machine_isa(void) {
-    return static_cast<lightbin_isa>(lightbin::machine_isa());
-}
-
 std::uint32_t lightbin_version(void) {
     return 10000 * LIGHTBIN_VERSION_MAJOR + 100 * LIGHTBIN_VERSION_MINOR + LIGHTBIN_VERSION_PATCH;
 }
@@ -211,17 +207,15 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
     using namespace lightbin::c;
     lightbin_depth_buffer given = {};
     lightbin::DepthBuffer known;
-    lightbin::Isa isa = lightbin::compiled_isa;
     lightbin_result result = first_error(check_pointers({{view, "view"}}), read(buffer, given, "buffer"));
     if (result.error == LIGHTBIN_OK)
         result = first_error(read_member(given.format, known.format, "buffer.format"), LIGHTBIN_MEMBER(samples),
                              LIGHTBIN_MEMBER(row_pitch), LIGHTBIN_MEMBER(skip_background),
-                             read_member(given.isa, isa, "buffer.isa"),
                              check_array(given.depth, given.count, "buffer.depth"),
                              check_bounds({min, max}, tiles, view->value, "tiles"));
     return call_if(result, [&] {
         known.depth = {given.depth, given.count};
-        const auto made = lightbin::reduce_depth(view->value, known, {span_of(min, tiles), span_of(max, tiles)}, isa);
+        const auto made = lightbin::reduce_depth(view->value, known, {span_of(min, tiles), span_of(max, tiles)});
         return made ? succeeded() : refused(made.error());
     });
 }
