@@ -114,9 +114,9 @@ typedef enum lightbin_error {
     LIGHTBIN_ID_BUFFER_TOO_SMALL = 121,
     LIGHTBIN_GRIDS_DIFFER = 122,
     LIGHTBIN_Z_BOUNDS_TOO_SMALL = 123,
-    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 124,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 124, /* in C++ alone */
     LIGHTBIN_SAMPLES_OUT_OF_RANGE = 125,
-    LIGHTBIN_ROW_PITCH_TOO_SMALL = 126,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 126, /* in C++ alone */
     LIGHTBIN_NO_SLICES = 127,
     LIGHTBIN_SLICE_RANGE_EMPTY = 128,
     LIGHTBIN_SLICES_DO_NOT_ASCEND = 129,
@@ -399,47 +399,16 @@ LIGHTBIN_API int32_t lightbin_slices_at(const lightbin_slices* slices, float dep
 
 /* ---- Z bounds ---- */
 
-/* The number format of a depth buffer, which decides how much rounding the bounds allow for. */
-typedef enum lightbin_depth_format {
-    LIGHTBIN_FLOAT32 = 0,
-    LIGHTBIN_UNORM24 = 1,
-    LIGHTBIN_UNORM16 = 2,
-    /* No window depths, but view depths as 32-bit floats, as of a logarithmic depth buffer. Background is +inf. */
-    LIGHTBIN_VIEW_DEPTH = 3
-} lightbin_depth_format;
-
-/* A depth buffer in main memory that covers the viewport and nothing else: window depths from 0 to 1, rows of pixels
- * from the window origin on, the samples of a pixel next to each other. */
-typedef struct lightbin_depth_buffer {
-    uint32_t size;
-    int32_t samples; /* a pixel, 1 to 8; 0: 1 */
-    const float* depth;
-    size_t count;     /* the number of floats in `depth` */
-    size_t row_pitch; /* floats from one row to the next; 0: width * samples */
-    int32_t format;   /* a lightbin_depth_format */
-    /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. For opaque
-     * surfaces alone: transparent ones are seen in front of the background, too. */
-    int32_t skip_background;
-} lightbin_depth_buffer;
-
-/* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row. Where a pointer
- * is null, lights are not tested against that bound. A tile whose min is greater than its max shows nothing and lists
- * no light. A NaN stands for no bound. */
+/* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row, such as the
+ * shader of lightbin_reduce_shader() writes; or lightbin_view_depths() of the window depths in a tile, widened by a
+ * step of the depth buffer's format. Where a pointer is null, lights are not tested against that bound. A tile whose
+ * min is greater than its max shows nothing and lists no light. A NaN stands for no bound. */
 typedef struct lightbin_z_bounds {
     uint32_t size;
     uint32_t unused;
     const float *min, *max;
     size_t tiles; /* the number of floats in each array, the view's number of tiles or more */
 } lightbin_z_bounds;
-
-/* Reduces a depth buffer to the Z bounds of each tile.
- *
- * min, max  arrays of `tiles` floats that become lightbin_z_bounds::min and max; null: this bound is not wanted
- *
- * Errors: LIGHTBIN_SAMPLES_OUT_OF_RANGE; LIGHTBIN_ROW_PITCH_TOO_SMALL, it is less than a row;
- * LIGHTBIN_DEPTH_BUFFER_TOO_SMALL and LIGHTBIN_Z_BOUNDS_TOO_SMALL, too few samples or tiles. */
-LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
-                                                   float* min, float* max, size_t tiles);
 
 /* ---- Binners ---- */
 
@@ -779,10 +748,19 @@ LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slice
 
 /* ---- Shaders that reduce depth on the GPU ---- */
 
+/* The number format of a depth buffer, which decides how much rounding the bounds allow for. */
+typedef enum lightbin_depth_format {
+    LIGHTBIN_FLOAT32 = 0,
+    LIGHTBIN_UNORM24 = 1,
+    LIGHTBIN_UNORM16 = 2,
+    /* No window depths, but view depths as 32-bit floats, as of a logarithmic depth buffer. Background is +inf. */
+    LIGHTBIN_VIEW_DEPTH = 3
+} lightbin_depth_format;
+
 /* What lightbin_reduce_shader() generates: a shader that reduces a depth texture to the least and greatest view depth
- * of each tile, as lightbin_reduce_depth() does. As a compute shader it is dispatched with one work group for each
- * tile, and writes a vec2 for each tile to the storage buffer `z_bounds`. As a fragment shader it draws one fragment
- * for each tile to a target of two 32-bit floats. */
+ * of each tile. As a compute shader it is dispatched with one work group for each tile, and writes a vec2 for each tile
+ * to the storage buffer `z_bounds`. As a fragment shader it draws one fragment for each tile to a target of two 32-bit
+ * floats. */
 typedef struct lightbin_reduce_options {
     uint32_t size;
     int32_t language;                 /* a lightbin_shader_language */

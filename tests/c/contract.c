@@ -496,36 +496,6 @@ static void test_grids(void) {
     lightbin_view_destroy(view);
 }
 
-static void test_depth(void) {
-    lightbin_view_options options = view_options();
-    lightbin_view* view = NULL;
-    static float depth[width * height];
-    float min[tile_count], max[tile_count];
-    lightbin_depth_buffer buffer;
-    CLEAR(buffer);
-    buffer.depth = depth;
-    buffer.count = width * height;
-    CHECK(lightbin_view_create(&options, &view).error == LIGHTBIN_OK);
-    NEEDS(lightbin_reduce_depth(view, NULL, min, max, tile_count), "buffer");
-    buffer.samples = 9;
-    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_SAMPLES_OUT_OF_RANGE);
-    buffer.samples = 2;
-    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_DEPTH_BUFFER_TOO_SMALL);
-    buffer.samples = 1;
-    buffer.row_pitch = 3;
-    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_ROW_PITCH_TOO_SMALL);
-    buffer.row_pitch = 0;
-    buffer.format = 7;
-    CHECK(refuses(lightbin_reduce_depth(view, &buffer, min, max, tile_count), LIGHTBIN_NOT_A_VALUE,
-                  "buffer.format"));
-    buffer.format = LIGHTBIN_UNORM24;
-    CHECK(lightbin_reduce_depth(view, &buffer, NULL, max, 5).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
-    max[0] = 0;
-    CHECK(lightbin_reduce_depth(view, &buffer, min, NULL, tile_count).error == LIGHTBIN_OK && max[0] == 0);
-    CHECK(lightbin_reduce_depth(view, &buffer, min, max, tile_count).error == LIGHTBIN_OK && max[0] > 0);
-    lightbin_view_destroy(view);
-}
-
 /* Shaders that read lists. */
 static void test_snippet(void) {
     lightbin_snippet_options options;
@@ -743,7 +713,6 @@ int main(void) {
     test_binners();
     test_masks();
     test_grids();
-    test_depth();
     test_snippet();
     test_cull();
     CHECK(use_everything(&sum).error == LIGHTBIN_OK && sum != 0);

@@ -425,26 +425,6 @@ TEST_CASE("C: with an eye, centres are doubles at any address") {
           dump(expected, cpp_grid, cpp_view, cpp_lights));
 }
 
-TEST_CASE("C: depth buffers are reduced as in C++") {
-    const auto view = make_view();
-    std::vector<float> depth(640 * 360 * 2), min(tiles), max(tiles), cpp_min(tiles), cpp_max(tiles);
-    for (std::size_t i = 0; i < depth.size(); ++i)
-        depth[i] = i % 4 == 0 ? 1 : 0.5f + static_cast<float>(i % 997) / 2000;
-    for (int round = 0; round < 8; ++round) {
-        const lightbin_depth_buffer buffer = {
-            sizeof buffer, 2, depth.data(), depth.size(), 0, round % 4, round % 2};
-        works(lightbin_reduce_depth(view.get(), &buffer, min.data(), max.data(), tiles));
-        REQUIRE(reduce_depth(cpp_view,
-                             {.depth = depth,
-                              .samples = 2,
-                              .format = static_cast<DepthFormat>(round % 4),
-                              .skip_background = round % 2 != 0},
-                             {cpp_min, cpp_max}));
-        CHECK(min == cpp_min);
-        CHECK(max == cpp_max);
-    }
-}
-
 TEST_CASE("C: a view knows what it knows in C++") {
     const auto view = make_view();
     auto info = sized<lightbin_view_info>();

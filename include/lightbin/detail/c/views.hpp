@@ -38,27 +38,16 @@ inline lightbin_result read_view(const lightbin_view_options* options, std::opti
     return result;
 }
 
-/// Returns why arrays with a view depth for each tile are refused, which have `tiles` elements, or are null if they are
-/// not wanted.
-inline lightbin_result check_bounds(std::initializer_list<const float*> bounds, std::size_t tiles, const View& view,
-                                    const char* name) {
-    for (const float* const bound : bounds)
-        if (bound != nullptr && tiles < view.tile_count())
-            return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, name, view.tile_count(), tiles);
-    return succeeded();
-}
-
-template <class Float> std::span<Float> span_of(Float* array, std::size_t size) {
-    return array != nullptr ? std::span(array, size) : std::span<Float>();
-}
-
 /// Reads the Z bounds that the caller describes for a view, or returns why they are refused.
 inline lightbin_result read_bounds(const lightbin_z_bounds* from, const View& view, ZBounds& bounds) {
     lightbin_z_bounds given;
     const lightbin_result result = read(from, given, "inputs.bounds");
     if (result.error != LIGHTBIN_OK) return result;
-    bounds = {span_of(given.min, given.tiles), span_of(given.max, given.tiles)};
-    return check_bounds({given.min, given.max}, given.tiles, view, "inputs.bounds");
+    if ((given.min != nullptr || given.max != nullptr) && given.tiles < view.tile_count())
+        return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, "inputs.bounds", view.tile_count(), given.tiles);
+    if (given.min != nullptr) bounds.min = {given.min, given.tiles};
+    if (given.max != nullptr) bounds.max = {given.max, given.tiles};
+    return result;
 }
 
 #if !defined(LIGHTBIN_WITHOUT_SLICES)
@@ -198,26 +187,6 @@ const float* lightbin_slices_boundaries(const lightbin_slices* slices) {
 
 std::int32_t lightbin_slices_at(const lightbin_slices* slices, float depth) {
     return slices != nullptr ? slices->value.slice_at(depth) : -1;
-}
-#endif
-
-#if !defined(LIGHTBIN_NO_DEPTH_TEST)
-lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
-                                      float* min, float* max, std::size_t tiles) {
-    using namespace lightbin::c;
-    lightbin_depth_buffer given = {};
-    lightbin::DepthBuffer known;
-    lightbin_result result = first_error(check_pointers({{view, "view"}}), read(buffer, given, "buffer"));
-    if (result.error == LIGHTBIN_OK)
-        result = first_error(read_member(given.format, known.format, "buffer.format"), LIGHTBIN_MEMBER(samples),
-                             LIGHTBIN_MEMBER(row_pitch), LIGHTBIN_MEMBER(skip_background),
-                             check_array(given.depth, given.count, "buffer.depth"),
-                             check_bounds({min, max}, tiles, view->value, "tiles"));
-    return call_if(result, [&] {
-        known.depth = {given.depth, given.count};
-        const auto made = lightbin::reduce_depth(view->value, known, {span_of(min, tiles), span_of(max, tiles)});
-        return made ? succeeded() : refused(made.error());
-    });
 }
 #endif
 
