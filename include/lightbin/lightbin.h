@@ -87,8 +87,6 @@ typedef enum lightbin_error {
     LIGHTBIN_NO_BOUNDS_GIVEN = 8,  /* the binner's options read Z bounds */
     LIGHTBIN_NOT_READ = 9,         /* slices, Z bounds or a matrix were given that the options do not read */
     LIGHTBIN_BUFFER_TOO_SMALL = 10,
-    /* A grid is not at the beginning of the memory that another is copied behind it in */
-    LIGHTBIN_OTHER_MEMORY = 11,
 
     LIGHTBIN_MATRIX_NOT_FINITE = 100,
     LIGHTBIN_NOT_A_PROJECTION = 101,
@@ -110,9 +108,9 @@ typedef enum lightbin_error {
     LIGHTBIN_TOO_MANY_LIGHTS = 117,
     LIGHTBIN_TOO_MANY_ENTRIES = 118,
     LIGHTBIN_TOO_MANY_PAIRS = 119,
-    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 120,
-    LIGHTBIN_ID_BUFFER_TOO_SMALL = 121,
-    LIGHTBIN_GRIDS_DIFFER = 122,
+    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 120, /* in C++ alone */
+    LIGHTBIN_ID_BUFFER_TOO_SMALL = 121,    /* in C++ alone */
+    LIGHTBIN_GRIDS_DIFFER = 122,           /* in C++ alone */
     LIGHTBIN_Z_BOUNDS_TOO_SMALL = 123,
     LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 124, /* in C++ alone */
     LIGHTBIN_SAMPLES_OUT_OF_RANGE = 125,
@@ -467,8 +465,8 @@ typedef struct lightbin_bin_range {
     uint32_t least, greatest;
 } lightbin_bin_range;
 
-/* A finished light grid. Set `size` before the call that fills it in. It refers to memory of the binner, which is valid
- * until the binner's next call, or to the caller's memory after lightbin_copy_grid(). */
+/* A finished light grid. Set `size` before the call that fills it in. The arrays are memory of the binner, which is
+ * valid until the binner's next call. */
 typedef struct lightbin_grid {
     uint32_t size;
     int32_t tiles_x, tiles_y;
@@ -548,30 +546,6 @@ LIGHTBIN_API lightbin_result lightbin_dump(const lightbin_binner* binner, const 
                                            const lightbin_grid* grid, const lightbin_masks* masks, char* text,
                                            size_t capacity, size_t* size);
 
-/* ---- Finished grids ----
- *
- * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its
- * numbers: all offsets and ids must be inside of the arrays that they refer to. */
-
-/* Copies the ranges and ids of a grid to the caller's memory, which is only written, in ascending order, and so may be
- * a mapped GPU buffer. On success *grid is the copy.
- *
- * Shaders made with lightbin_snippet_options::views read the grids of several views in one memory. The copy of each
- * view after the first is written behind the others. *grid is then the grid of all views so far: its ranges are those
- * of view 0, then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts
- * and ranks are those of the last view.
- *
- * before                       the copy of the views before, in the same memory; null for the first view, or a single
- *                              one
- * range_capacity, id_capacity  how many ranges and ids there is memory for, in all views
- *
- * Errors: LIGHTBIN_GRIDS_DIFFER, in their numbers of tiles or slices; LIGHTBIN_NOT_A_VALUE, ids of different widths;
- * LIGHTBIN_OTHER_MEMORY, that of `before`; LIGHTBIN_TOO_MANY_CELLS and LIGHTBIN_TOO_MANY_ENTRIES, of all views, more
- * than 32 bits count; LIGHTBIN_RANGE_BUFFER_TOO_SMALL and LIGHTBIN_ID_BUFFER_TOO_SMALL. */
-LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before,
-                                                lightbin_range* ranges, uint64_t range_capacity, void* ids,
-                                                uint64_t id_capacity);
-
 /* ---- Encodings ---- */
 
 /* How the list of a tile is stored. */
@@ -601,7 +575,8 @@ LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* forma
                                                     uint64_t* bytes);
 
 /* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
- * grid->ranges still index. Every list is complete, except that the sentinel format cuts lists that are longer than its
+ * grid->ranges still index. All offsets and ids must be inside of the arrays that they refer to, as in a grid that
+ * lightbin_bin() filled in. Every list is complete, except that the sentinel format cuts lists that are longer than its
  * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN, of the format; LIGHTBIN_IDS_TOO_NARROW, an id is
  * too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format, void* out,
@@ -660,7 +635,9 @@ typedef struct lightbin_snippet_options {
     uint32_t uniform_block_bytes; /* the device's limit for one block; 0: 16384 */
     int32_t slots_given;          /* 0: the slots are the bindings 0 to 5 of set 0 in the order below */
     lightbin_slot tiles, lists, grid, slices, bins, view;
-    uint32_t views; /* how many views' lists lie one after another in the buffers, up to 512; 0: 1 */
+    /* How many views' lists lie one after another in the buffers, up to 512; 0: 1. To each offset of a view is added the
+     * number of ids of the views before it. */
+    uint32_t views;
     int32_t masks;  /* read lightbin_masks::words, bound at `lists`, in place of lists and their format */
     int32_t columns_and_rows; /* for views of which numbers of tiles were given; tile_size is not read */
     int32_t turned;           /* that of lightbin_view_info */

@@ -280,8 +280,6 @@ static void test_binners(void) {
     lightbin_binner *binner = NULL, *boxes = NULL;
     lightbin_view* view = NULL;
     lightbin_slices* slices = NULL;
-    uint32_t* ids;
-    lightbin_range ranges[tile_count];
     float not_affine[16];
     double eye[3];
     CLEAR(inputs);
@@ -348,17 +346,9 @@ static void test_binners(void) {
     bounds = bounds_given();
     CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_OK);
 
-    /* The caller's memory, copies and encodings. */
+    /* Encodings. */
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
     CHECK(grid.range_count == tile_count && grid.id_count > 0 && grid.lights == light_count);
-    ids = (uint32_t*)malloc((size_t)grid.id_count * sizeof *ids);
-    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count - 1, ids, grid.id_count).error ==
-          LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count - 1).error ==
-          LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    NEEDS(lightbin_copy_grid(&grid, NULL, ranges, tile_count, NULL, grid.id_count), "ids");
-    NEEDS(lightbin_copy_grid(NULL, NULL, ranges, tile_count, ids, 1), "grid");
-    CHECK(lightbin_copy_grid(&grid, NULL, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
     {
         lightbin_format format;
         lightbin_encoded encoded;
@@ -379,7 +369,6 @@ static void test_binners(void) {
         CHECK(refuses(lightbin_encode(&grid, &format, NULL, 0, &encoded), LIGHTBIN_NOT_A_VALUE,
                       "grid.id_bytes"));
     }
-    free(ids);
 
     /* No lights are no error. */
     CLEAR(lights);
@@ -448,51 +437,6 @@ static void test_masks(void) {
     NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, NULL, 0, &size), "masks.words");
     lightbin_binner_destroy(binner);
     lightbin_slices_destroy(slices);
-    lightbin_view_destroy(view);
-}
-
-/* What is made of finished grids: several views in one memory. */
-static void test_grids(void) {
-    lightbin_view_options view_given = view_options();
-    lightbin_binner_options options = options_given(0, LIGHTBIN_NO_SLICING);
-    lightbin_lights lights = lights_given();
-    lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
-    lightbin_binner *binner = NULL, *sixteen = NULL;
-    lightbin_view* view = NULL;
-    static lightbin_range ranges[2 * tile_count];
-    uint32_t* ids;
-    CHECK(lightbin_view_create(&view_given, &view).error == LIGHTBIN_OK);
-    CHECK(lightbin_binner_create(&options, &binner).error == LIGHTBIN_OK);
-    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
-    ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
-    other = grid;
-    both = grid;
-    CHECK(lightbin_copy_grid(&other, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
-    CHECK(refuses(lightbin_copy_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
-                  LIGHTBIN_OTHER_MEMORY, "before"));
-    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
-          LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
-    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
-          LIGHTBIN_ID_BUFFER_TOO_SMALL);
-    CHECK(refuses(lightbin_copy_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
-                  "before"));
-    CHECK(ranges[tile_count].count == 0 && both.ids == grid.ids);
-    other.tiles_x = 13;
-    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
-          LIGHTBIN_GRIDS_DIFFER);
-    other.tiles_x = 20;
-    CHECK(lightbin_copy_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
-          LIGHTBIN_OK);
-    options.ids = LIGHTBIN_U16;
-    if (lightbin_binner_create(&options, &sixteen).error == LIGHTBIN_OK) {
-        narrow = empty_grid();
-        CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
-        CHECK(refuses(lightbin_copy_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
-                      LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
-    }
-    free(ids);
-    lightbin_binner_destroy(sixteen);
-    lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);
 }
 
@@ -712,7 +656,6 @@ int main(void) {
     test_slices();
     test_binners();
     test_masks();
-    test_grids();
     test_snippet();
     test_cull();
     CHECK(use_everything(&sum).error == LIGHTBIN_OK && sum != 0);

@@ -70,18 +70,6 @@ void check_grid(const lightbin_grid& grid) {
     require(at == grid.id_count, "ids in no list");
 }
 
-/// Calls all functions that take a finished grid.
-void use_grid(const lightbin_grid& grid) {
-    std::vector<lightbin_range> ranges(2 * grid.range_count);
-    std::vector<char> ids(2 * grid.id_count * grid.id_bytes);
-    lightbin_grid first = grid, both = grid;
-    if (succeeded(lightbin_copy_grid(&first, nullptr, ranges.data(), ranges.size(), ids.data(),
-                                     ids.size() / grid.id_bytes)) &&
-        succeeded(lightbin_copy_grid(&both, &first, ranges.data(), ranges.size(), ids.data(),
-                                     ids.size() / grid.id_bytes)))
-        check_grid(both);
-}
-
 /// Returns the lights' floats in an array of exactly the size that they take or, if the bytes say so, no array.
 lightbin_floats take_floats(Bytes& bytes, std::size_t count, std::size_t each,
                             std::vector<std::unique_ptr<char[]>>& memory) {
@@ -267,11 +255,6 @@ void use_calls(Bytes bytes) {
             encoded.size = sizeof encoded;
             std::vector<std::byte> out(bytes.take<std::uint16_t>());
             succeeded(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
-            use_grid(grid);
-            std::vector<lightbin_range> ranges(grid.range_count);
-            std::vector<char> ids(grid.id_count * grid.id_bytes);
-            if (succeeded(lightbin_copy_grid(&grid, nullptr, ranges.data(), ranges.size(), ids.data(), grid.id_count)))
-                check_grid(grid);
         }
         left += bytes.byte();
     }

@@ -44,9 +44,8 @@ inline constexpr const char* sentences[] = {
     ("the options do not read this input: bounds want a depth test or clusters, slices a slicing, and lights "
      "in view space no matrix"),
     "this memory holds {available} elements, and {needed} are needed",
-    "this grid must be in the memory that the next view's lists are to be copied to, at its beginning",
 };
-static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_OTHER_MEMORY + 1);
+static_assert(sizeof sentences / sizeof *sentences == LIGHTBIN_BUFFER_TOO_SMALL + 1);
 
 /// Returns an English sentence for a result, with its name and numbers filled in.
 inline Text text_of(const lightbin_result& result) {
@@ -57,7 +56,7 @@ inline Text text_of(const lightbin_result& result) {
         text.append(result.name);
         text.append(": ");
     }
-    const bool known = 0 <= result.error && result.error <= LIGHTBIN_OTHER_MEMORY;
+    const bool known = 0 <= result.error && result.error <= LIGHTBIN_BUFFER_TOO_SMALL;
     text.append(Error{ErrorCode{}, result.needed, result.available}
                     .message(known ? sentences[result.error] : "unknown error")
                     .c_str());

@@ -33,7 +33,7 @@ lightbin_result lightbin_dump(const lightbin_binner* binner, const lightbin_view
                 lightbin::LightMasks(known.tiles_x, known.tiles_y,
                                      {known.words, static_cast<std::size_t>(known.word_count)},
                                      {known.lights, known.rejected, known.culled}, {})));
-        return with_grid(grid, "grid", [&](const auto& from) {
+        return with_grid(grid, [&](const auto& from) {
             return write(
                 lightbin::detail::dump(view->value, lights.all(), {binner->how.is, slices, bounds}, from));
         });

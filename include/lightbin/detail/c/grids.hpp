@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The C functions that read finished grids: they copy a grid's lists, or encode them in smaller formats.
+// The C functions that encode the lists of finished grids in smaller formats.
 #pragma once
 
 #include <lightbin/detail/c/binners.hpp>
@@ -10,9 +10,9 @@ namespace lightbin {
 namespace c {
 
 /// Calls body() with the LightGrid that the caller's struct describes.
-template <class Body> lightbin_result with_grid(const lightbin_grid* given, const char* name, const Body& body) {
+template <class Body> lightbin_result with_grid(const lightbin_grid* given, const Body& body) {
     lightbin_grid grid;
-    lightbin_result result = read(given, grid, name);
+    lightbin_result result = read(given, grid, "grid");
     if (result.error == LIGHTBIN_OK)
         result = first_error(check_array(grid.ranges, grid.range_count, "grid.ranges"),
                              check_array(grid.ids, grid.id_count, "grid.ids"));
@@ -53,31 +53,6 @@ inline lightbin_result read_member(const lightbin_format* given, ListFormat& kno
 
 extern "C" {
 
-lightbin_result lightbin_copy_grid(lightbin_grid* grid, const lightbin_grid* before, lightbin_range* ranges,
-                                   std::uint64_t range_capacity, void* ids, std::uint64_t id_capacity) {
-    using namespace lightbin::c;
-    const auto copy = [&]<class Id>(const lightbin::LightGrid<Id>& from, const auto&... behind) {
-        const lightbin_result checked = first_error(check_array(ranges, from.ranges().size(), "ranges"),
-                                                    check_array(ids, from.ids().size(), "ids"));
-        if (checked.error != LIGHTBIN_OK) return checked;
-        const auto copied =
-            from.copy_to({same_layout<lightbin::ListRange>(ranges), static_cast<std::size_t>(range_capacity)},
-                         {static_cast<Id*>(ids), static_cast<std::size_t>(id_capacity)}, behind...);
-        return copied ? write_grid(*copied, grid) : refused(copied.error());
-    };
-    if (before == nullptr) return with_grid(grid, "grid", copy);
-    return with_grid(grid, "grid", [&]<class Id>(const lightbin::LightGrid<Id>& from) {
-        return with_grid(before, "before", [&]<class OtherId>(const lightbin::LightGrid<OtherId>& first) {
-            if constexpr (std::is_same_v<Id, OtherId>) {
-                const bool same = before->ranges == ranges && before->ids == ids;
-                return same ? copy(from, first) : refused(LIGHTBIN_OTHER_MEMORY, "before");
-            } else {
-                return refused(LIGHTBIN_NOT_A_VALUE, "before.id_bytes", sizeof(OtherId));
-            }
-        });
-    });
-}
-
 lightbin_result lightbin_encoded_bytes(const lightbin_format* format, std::uint64_t tiles, std::uint64_t entries,
                                        std::uint64_t* bytes) {
     using namespace lightbin::c;
@@ -95,7 +70,7 @@ lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format
     const lightbin_result checked = first_error(check_array(out, out_bytes, "out"), check_size(encoded, "encoded"),
                                                 read_format(format, known, "format"));
     return call_if(checked, [&] {
-        return with_grid(grid, "grid", [&](const auto& from) {
+        return with_grid(grid, [&](const auto& from) {
             const auto made = lightbin::encode(
                 from, known, std::span(static_cast<std::byte*>(out), static_cast<std::size_t>(out_bytes)));
             if (!made) return refused(made.error());
