@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export CMAKE_GENERATOR=Ninja
 flags="-O0"
-for part in SIMD SPOTS BOXES U16 DEPTH_TEST CLUSTERS Z_BINS SHADERS; do
+for part in SIMD SPOTS BOXES U16 DEPTH_TEST DEPTH_SLICES SHADERS; do
     flags="$flags -DLIGHTBIN_NO_$part"
 done
 mkdir "$work/user"

@@ -46,8 +46,8 @@ int main(void) {
 
     refuses(create(LIGHTBIN_U16, 0, 0), "LIGHTBIN_NO_U16");
     refuses(create(0, 1, 0), "LIGHTBIN_NO_DEPTH_TEST");
-    refuses(create(0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
-    refuses(create(0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
+    refuses(create(0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_DEPTH_SLICES");
+    refuses(create(0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_DEPTH_SLICES");
     given.spots.count = 1;
     given.spots.centre.first = lights;
     given.spots.radius.first = lights + 3;

@@ -19,7 +19,7 @@ compile() {
 code_of() {
     size -A "$work/$1.o" | awk '$1 ~ /^\.text/ { sum += $2 } END { print sum }'
 }
-all="SPOTS BOXES U16 DEPTH_TEST CLUSTERS Z_BINS SHADERS REDUCE_SHADERS CULL_SHADERS DUMP"
+all="SPOTS BOXES U16 DEPTH_TEST DEPTH_SLICES SHADERS CULL_SHADERS DUMP"
 
 if [ "${1-}" = --check ]; then
     compile whole
@@ -71,6 +71,5 @@ for part in $all; do
     row "$part" "\`LIGHTBIN_NO_$part\`" "$part"
 done
 row kinds "spots and boxes" SPOTS BOXES
-row texts "shader text" SHADERS REDUCE_SHADERS CULL_SHADERS
 # shellcheck disable=SC2086  # a word a part
 row plain "all of these: plain tiles of spheres" $all

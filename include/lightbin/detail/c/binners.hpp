@@ -18,11 +18,8 @@ constexpr const char* left_out([[maybe_unused]] const Options& options) {
 #if defined(LIGHTBIN_NO_DEPTH_TEST)
     if (options.depth_test) return "LIGHTBIN_NO_DEPTH_TEST";
 #endif
-#if defined(LIGHTBIN_NO_CLUSTERS)
-    if (options.slicing == Slicing::clusters) return "LIGHTBIN_NO_CLUSTERS";
-#endif
-#if defined(LIGHTBIN_NO_Z_BINS)
-    if (options.slicing == Slicing::z_bins) return "LIGHTBIN_NO_Z_BINS";
+#if defined(LIGHTBIN_NO_DEPTH_SLICES)
+    if (options.slicing != Slicing::none) return "LIGHTBIN_NO_DEPTH_SLICES";
 #endif
     return nullptr;
 }

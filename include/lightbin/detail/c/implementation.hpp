@@ -4,25 +4,12 @@
 // there; options and kinds of lights that are left out are refused by the define's name.
 #pragma once
 
-#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_REDUCE_SHADERS)
-#define LIGHTBIN_NO_REDUCE_SHADERS 1
-#endif
-#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_CULL_SHADERS)
-#define LIGHTBIN_NO_CULL_SHADERS 1
-#endif
-#if defined(LIGHTBIN_NO_CLUSTERS) && defined(LIGHTBIN_NO_Z_BINS) && defined(LIGHTBIN_NO_CULL_SHADERS)
-#define LIGHTBIN_WITHOUT_SLICES 1
-#endif
-
 #include <lightbin/detail/c/grids.hpp>
 #if !defined(LIGHTBIN_NO_DUMP)
 #include <lightbin/detail/c/dumps.hpp>
 #endif
 #if !defined(LIGHTBIN_NO_SHADERS)
 #include <lightbin/detail/c/shaders.hpp>
-#if !defined(LIGHTBIN_NO_REDUCE_SHADERS)
-#include <lightbin/detail/c/reduce_shaders.hpp>
-#endif
 #if !defined(LIGHTBIN_NO_CULL_SHADERS)
 #include <lightbin/detail/c/cull_shaders.hpp>
 #endif

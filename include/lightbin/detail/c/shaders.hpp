@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The C side's shader texts that read lists, and the data that the shaders read.
+// The C side's shader texts that read lists or reduce depth buffers, and the data that the shaders read.
 #pragma once
 
 #include <lightbin/detail/c/grids.hpp>
 
 #include <lightbin/shader.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 struct lightbin_shader {
     lightbin::ShaderText value;
@@ -111,6 +112,27 @@ lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint3
         const std::vector<std::uint32_t> made = lightbin::shader_slices(slices->value);
         return write_items(made.data(), made.size(), words, capacity, nullptr, "words");
     });
+}
+
+lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, lightbin_shader** shader) {
+    using namespace lightbin::c;
+    lightbin_reduce_options given;
+    lightbin::ReduceOptions known;
+    lightbin_result result = read(options, given, "options");
+    if (result.error == LIGHTBIN_OK)
+        result = first_error(LIGHTBIN_MEMBER(language), LIGHTBIN_MEMBER(prefix), LIGHTBIN_MEMBER(fragment),
+                             LIGHTBIN_MEMBER(samples), LIGHTBIN_MEMBER(format), LIGHTBIN_MEMBER(reversed_z),
+                             LIGHTBIN_MEMBER(orthographic), LIGHTBIN_MEMBER(oblique), LIGHTBIN_MEMBER(skip_background),
+                             LIGHTBIN_MEMBER(flip_y), LIGHTBIN_MEMBER(viewport_corner),
+                             LIGHTBIN_MEMBER(push_constants));
+    if (result.error == LIGHTBIN_OK && given.slots_given != 0)
+        first_error(LIGHTBIN_MEMBER(depth), LIGHTBIN_MEMBER(z_bounds), LIGHTBIN_MEMBER(grid));
+    return make_shader(shader, result, [&] { return lightbin::reduce_shader(known); });
+}
+
+lightbin_result lightbin_get_reduce_constants(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
+                                              lightbin_reduce_constants* constants) {
+    return lightbin::c::write_constants<lightbin::reduce_constants>(view, constants, corner_x, corner_y);
 }
 
 }  // extern "C"

@@ -50,7 +50,6 @@ inline lightbin_result read_bounds(const lightbin_z_bounds* from, const View& vi
     return result;
 }
 
-#if !defined(LIGHTBIN_WITHOUT_SLICES)
 /// Makes a lightbin_slices, a handle of C, of the slices that make() returns.
 template <class Make>
 lightbin_result make_slices(float margin, const lightbin_result& checked, lightbin_slices** slices, const Make& make) {
@@ -63,7 +62,6 @@ lightbin_result make_slices(float margin, const lightbin_result& checked, lightb
         return make_handle(slices, margin > 0 ? made->with_margin(margin) : *made);
     });
 }
-#endif
 
 }  // namespace c
 }  // namespace lightbin
@@ -152,7 +150,6 @@ float lightbin_view_window_depth(const lightbin_view* view, const double* image)
     return view->value.window_depth({image[0], image[1], image[2]});
 }
 
-#if !defined(LIGHTBIN_WITHOUT_SLICES)
 lightbin_result lightbin_slices_exponential(std::int32_t count, float first, float last, float margin,
                                             lightbin_slices** slices) {
     using namespace lightbin::c;
@@ -188,6 +185,5 @@ const float* lightbin_slices_boundaries(const lightbin_slices* slices) {
 std::int32_t lightbin_slices_at(const lightbin_slices* slices, float depth) {
     return slices != nullptr ? slices->value.slice_at(depth) : -1;
 }
-#endif
 
 }  // extern "C"
