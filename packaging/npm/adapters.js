@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The slices of depth in the picture of an adapter's camera.
+// What the adapters share.
+
+/// Options of a view whose tiles all list all lights of infinite range.
+export const all_lights = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1],
+                           clipDepth: 'minus-one-to-one', reversedZ: false};
+
+/// Returns a function that warns of an error, and of what lightbin does then, once for each cause.
+export function warner(what_it_does) {
+    const causes = new Set();
+    return ({code, message}) => {
+        const cause = code ?? message;
+        if (!causes.has(cause)) console.warn(`lightbin ${what_it_does}: ${message}`);
+        causes.add(cause);
+    };
+}
 
 /// Makes the slices of a picture again if its view has other depths, and returns whether it did. Those of a perspective
 /// view are exponential, up to 100,000 times the near plane's depth.

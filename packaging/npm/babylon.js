@@ -15,8 +15,8 @@ import '@babylonjs/core/ShadersWGSL/ShadersInclude/clusteredLightingCompute.js';
 import '@babylonjs/core/ShadersWGSL/ShadersInclude/clusteredLightingFunctions.js';
 import '@babylonjs/core/ShadersWGSL/ShadersInclude/lightUboDeclaration.js';
 import '@babylonjs/core/ShadersWGSL/ShadersInclude/pbrClusteredLightingFunctions.js';
+import {all_lights, update_slices, warner} from './adapters.js';
 import * as texts from './babylon_text.js';
-import {update_slices} from './view_slices.js';
 
 // A light has 20 floats, Babylon's own: position, exponent | diffuse, range | specular, radius | direction, cosine |
 // range, 1 / range ** 2, scale and offset of the cone's angle.
@@ -102,10 +102,6 @@ let change_shaders = () => {
     change_shaders = () => {};
 };
 
-// What lists all lights of infinite range.
-const everything = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], clipDepth: 'minus-one-to-one',
-                    reversedZ: false};
-
 export class ClusteredLights extends ClusteredLightContainer {
     #lightbin;
     #binner;
@@ -116,7 +112,7 @@ export class ClusteredLights extends ClusteredLightContainer {
     #frame;
     #render;       // Babylon's number of the last pass
     #observer;
-    #warnings = new Set();
+    #warn = warner("draws with all lights where it can't make masks");
 
     constructor(lightbin, name, lights, scene) {
         change_shaders();
@@ -125,7 +121,7 @@ export class ClusteredLights extends ClusteredLightContainer {
         super(name, lights, scene);
         this.#lightbin = lightbin;
         this.#binner = lightbin.binner({slicing: 'z-bins'});
-        this.#view = lightbin.view({...everything, width: 1, height: 1, tileSize: 32});
+        this.#view = lightbin.view({...all_lights, width: 1, height: 1, tileSize: 32});
         this.#floats = lightbin.floats(light_floats * lights_per_row);
         this.#observer = scene.onBeforeRenderingGroupObservable.add(() => this.#update());
         this._tileMaskTexture.refreshRate = 0;
@@ -188,7 +184,7 @@ export class ClusteredLights extends ClusteredLightContainer {
             });
         } catch (error) {
             const radius = new Float32Array(count).fill(Infinity);
-            this.#mask(pass, {...size, ...everything}, {spheres: {array, stride, count, centre: 0, radius}});
+            this.#mask(pass, {...size, ...all_lights}, {spheres: {array, stride, count, centre: 0, radius}});
             this.#warn(error);
         }
         pass.grid = this.#view.gridConstants().subarray(0, 4);
@@ -205,12 +201,6 @@ export class ClusteredLights extends ClusteredLightContainer {
             this.#upload(pass, 'slices', {data, width: data.length, height: 1});
         }
         this.masks = this.#binner.masks(this.#view, lights, {slices: pass.slices});
-    }
-
-    #warn({code, message}) {
-        if (this.#warnings.has(code)) return;
-        this.#warnings.add(code);
-        console.warn(`lightbin draws with all lights where it can't make masks: ${message}`);
     }
 
     #write(lights, origin) {

@@ -19,7 +19,7 @@ minify() {
 node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$work/tables.js" "$work/layouts.inl"
 cp $here/lightbin.js "$work"
 minify "$work/lightbin.js" --bundle --outfile="$out/lightbin.js"
-minify $here/three*.js $here/playcanvas.js $here/babylon.js $here/view_slices.js --outdir="$out"
+minify $here/three*.js $here/playcanvas.js $here/babylon.js $here/adapters.js --outdir="$out"
 cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
 sed "s/@VERSION@/$(library_version)/" $here/package.json.in >"$out/package.json"
 

@@ -5,6 +5,7 @@ import {
     LIGHTTYPE_SPOT, PIXELFORMAT_R32U, PIXELFORMAT_RGBA32F, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL,
     ShaderChunks, Vec3, WorldClusters,
 } from 'playcanvas';
+import {warner} from './adapters.js';
 
 // PlayCanvas has one light in each row of its texture of lights, which limits their number. Here a row has this many.
 const lights_per_row = 64, words_per_row = 2048;
@@ -68,7 +69,7 @@ export class ClusteredLights {
     #edges = [];
     #floats;
     #texels;  // of a light in PlayCanvas' texture
-    #warnings = new Set();
+    #warn = warner("lists all lights in one cell where it can't make scene.lighting.cells");
 
     constructor(lightbin, app, {depthTest = false, ...others} = {}) {
         for (const key in others) throw new Error(`options: there is no '${key}', but depthTest`);
@@ -121,12 +122,6 @@ export class ClusteredLights {
             make(clusters.usedLights.length - 1, this.#unite(clusters));
             this.#warn(error);
         }
-    }
-
-    #warn({code, message}) {
-        if (this.#warnings.has(code ?? message)) return;
-        this.#warnings.add(code ?? message);
-        console.warn(`lightbin lists all lights in one cell where it can't make scene.lighting.cells: ${message}`);
     }
 
     /// Makes one cell of all that is drawn. With the infinite margin it lists all lights.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the adapters for three.js' two renderers share: they make the lists of a scene's lights in a camera's picture.
 import {Vector3, WebGPUCoordinateSystem} from 'three';
-import {update_slices} from './view_slices.js';
+import {all_lights, update_slices, warner} from './adapters.js';
 
 // A light has 16 floats, four texels of a texture:
 // view-space x, y, z, range for the lists | red, green, blue, decay | direction x, y, z, cone's cosine | penumbra's
@@ -11,8 +11,7 @@ export const light_floats = 16, lights_per_row = 256;
 export const option_names = ['masks', 'tileSize', 'slices', 'firstSlice', 'depthTest', 'cutoff'];
 
 // A picture whose only tile lists all lights.
-const one_pixel = {projection: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1], width: 1, height: 1,
-                   clipDepth: 'minus-one-to-one', reversedZ: false};
+const one_pixel = {...all_lights, width: 1, height: 1};
 const place = new Vector3(), axis = new Vector3();
 
 export class ListMaker {
@@ -21,7 +20,7 @@ export class ListMaker {
     #margin;
     #binner;
     #view;
-    #warnings = new Set();
+    #warn = warner("draws with all lights where it can't make lists");
 
     /// known   the names of the options that there are
     /// margin  of the slices
@@ -74,12 +73,6 @@ export class ListMaker {
     dispose() {
         this.#binner.dispose();
         this.#view.dispose();
-    }
-
-    #warn({code, message}) {
-        if (this.#warnings.has(code ?? message)) return;
-        this.#warnings.add(code ?? message);
-        console.warn(`lightbin draws with all lights where it can't make lists: ${message}`);
     }
 
     #write(lists, lights, matrixWorldInverse) {
