@@ -3,7 +3,7 @@
 # Installs what is missing, builds the package, fetches Babylon.js, and runs it in headless Chromium on a software
 # renderer. Takes about four minutes, and some more the first time.
 #   --bench  prints the times of frames with Babylon's own clustered lights and with lightbin's instead
-#   --serve  shows 2,900 moving lights with both instead, at http://localhost:8000/page.html
+#   --serve  shows 2,900 moving lights with both instead, at http://localhost:8000/tests/page.html
 set -eu
 me=tests/babylon.sh
 cd "$(dirname "$0")/.."

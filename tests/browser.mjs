@@ -3,6 +3,7 @@
 // playwright-core.
 import assert from 'node:assert/strict';
 import path from 'node:path';
+import {after, before} from 'node:test';
 import {pathToFileURL} from 'node:url';
 import {serve} from './server.mjs';
 
@@ -30,7 +31,7 @@ export function complaints_of(page) {
 
 /// Opens a page of a folder, a URL, which draws nothing until it is told to, and waits for window[name]. Returns the
 /// page, its complaints, and close().
-export async function open(folder, name, file = 'page.html') {
+export async function open(folder, name, file = 'tests/page.html') {
     const server = await serve(0, folder.pathname), browser = await launch(), page = await browser.newPage();
     const complaints = complaints_of(page);
     page.setDefaultTimeout(240000);
@@ -41,6 +42,18 @@ export async function open(folder, name, file = 'page.html') {
         await browser.close();
         server.close();
     }};
+}
+
+export let page, complaints;
+
+/// Opens a page before the tests of a file, and closes it after them. They take out the complaints that they expect.
+export function page_of_tests(...given) {
+    let close;
+    before(async () => { ({page, complaints, close} = await open(...given)); });
+    after(async () => {
+        await close();
+        assert.deepEqual(complaints, []);
+    });
 }
 
 /// Asserts of the difference() of two pictures that they are at most `apart` of 255 apart, and not dark.

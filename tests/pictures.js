@@ -11,6 +11,14 @@ export function random(low, high) {
     return low + (high - low) * state / 2 ** 32;
 }
 
+/// What a canvas shows, in the task that has drawn it.
+export function pixels_of(canvas) {
+    const {width, height} = canvas;
+    const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
+    context.drawImage(canvas, 0, 0);
+    return context.getImageData(0, 0, width, height).data;
+}
+
 /// The greatest difference of a byte, how many pixels differ, how bright the first picture is, and whether their sizes
 /// differ.
 export function difference(a, b) {

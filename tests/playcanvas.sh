@@ -3,7 +3,7 @@
 # sudo. Installs what is missing, builds the package, fetches PlayCanvas, and runs it in headless Chromium on a software
 # renderer. Takes about three minutes, and some more the first time.
 #   --serve  shows 5,000 moving lights instead, with PlayCanvas' own clusters and with lightbin, at
-#            http://localhost:8000/page.html
+#            http://localhost:8000/tests/page.html
 set -eu
 me=tests/playcanvas.sh
 cd "$(dirname "$0")/.."

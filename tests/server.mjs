@@ -28,5 +28,5 @@ export async function serve(port, here) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
     const [, , port, folder] = process.argv;
-    console.log(`${(await serve(Number(port), path.resolve(folder))).url}page.html`);
+    console.log(`${(await serve(Number(port), path.resolve(folder))).url}tests/page.html`);
 }

@@ -2,8 +2,8 @@
 # Tests the npm package's adapters for three.js in a browser: `sh tests/three.sh` on Debian 12, as root or with sudo.
 # Installs what is missing, builds the package, fetches three.js, and runs it in headless Chromium on a software
 # renderer. Takes about seven minutes, and some more the first time.
-#   --serve  shows pages with 5,000 moving lights instead: http://localhost:8000/page.html for WebGLRenderer,
-#            webgpu_page.html for WebGPURenderer, webgpu_page.html#webgl for that with WebGL 2
+#   --serve  shows pages with 5,000 moving lights instead: http://localhost:8000/tests/page.html for WebGLRenderer,
+#            /webgpu_page.html for WebGPURenderer, /webgpu_page.html#webgl for that with WebGL 2
 set -eu
 me=tests/three.sh
 cd "$(dirname "$0")/.."

@@ -25,7 +25,7 @@ import {CreateSphere} from '@babylonjs/core/Meshes/Builders/sphereBuilder.js';
 import {Scene} from '@babylonjs/core/scene.js';
 import {load} from 'lightbin';
 import {ClusteredLights} from 'lightbin/babylon';
-import {difference, random, seed} from '/tests/pictures.js';
+import {difference, pixels_of, random, seed} from '/tests/pictures.js';
 
 const lightbin = await load();
 
@@ -181,10 +181,7 @@ class Stage {
     async draw() {
         await this.scene.whenReadyAsync();
         this.render();
-        const canvas = this.engine.getRenderingCanvas(), {width, height} = canvas;
-        const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
-        context.drawImage(canvas, 0, 0);
-        return context.getImageData(0, 0, width, height).data;
+        return pixels_of(this.engine.getRenderingCanvas());
     }
 
     /// Another picture of the scene, by another camera to a texture.

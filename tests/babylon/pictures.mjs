@@ -2,28 +2,20 @@
 // node --test tests/babylon/pictures.mjs: the adapter for Babylon.js in headless Chromium.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import {after, before, test} from 'node:test';
-import {complaints_of, open, same} from '../browser.mjs';
+import {before, test} from 'node:test';
+import {complaints, complaints_of, page, page_of_tests, same} from '../browser.mjs';
 
-let browser, page;
-before(async () => {
-    browser = await open(new URL('.', import.meta.url), 'Stage');
-    page = browser.page;
-    await page.evaluate(() => {
-        /// Makes stages of some kinds, and ends them after body().
-        window.among = async (kinds, options, body) => {
-            const stages = [];
-            for (const kind of kinds) stages.push(await new Stage(kind).start(options));
-            const result = await body(...stages);
-            for (const stage of stages) stage.destroy();
-            return result;
-        };
-    });
-});
-after(async () => {
-    await browser.close();
-    assert.deepEqual(browser.complaints, []);
-});
+page_of_tests(new URL('.', import.meta.url), 'Stage');
+before(() => page.evaluate(() => {
+    /// Makes stages of some kinds, and ends them after body().
+    window.among = async (kinds, options, body) => {
+        const stages = [];
+        for (const kind of kinds) stages.push(await new Stage(kind).start(options));
+        const result = await body(...stages);
+        for (const stage of stages) stage.destroy();
+        return result;
+    };
+}));
 
 /// Where lights are added in another order, a byte may differ by 1.
 function nearly(result, what) {
@@ -182,7 +174,7 @@ test('what can make no masks is drawn with all lights, and says so once', async 
     same(results.after, 'a good one again');
     same(results.again, 'a good light again');
     assert.equal(results.rejected, 1);
-    const warnings = browser.complaints.splice(0);
+    const warnings = complaints.splice(0);
     assert.equal(warnings.length, 1, `${warnings}`);
     assert.match(warnings[0], /all lights where it can't make masks: .*NaN/);
 });
@@ -211,7 +203,7 @@ test('what is refused, and dispose()', async () => {
 });
 
 test('a version of Babylon.js with other shaders is refused', async () => {
-    const other = await page.context().browser().newPage(), complaints = complaints_of(other);
+    const other = await page.context().browser().newPage(), others = complaints_of(other);
     await other.goto(page.url());
     await other.waitForFunction(() => window.Stage !== undefined);
     const messages = await other.evaluate(async () => {
@@ -229,6 +221,6 @@ test('a version of Babylon.js with other shaders is refused', async () => {
     });
     assert.match(messages[0], /^this version of Babylon.js has other shaders: clusteredLightingCompute has no /);
     assert.deepEqual(messages, [messages[0], messages[0], '']);
-    assert.deepEqual(complaints, []);
+    assert.deepEqual(others, []);
     await other.close();
 });

@@ -5,7 +5,7 @@
 import {load} from 'lightbin';
 import {ClusteredLights} from 'lightbin/playcanvas';
 import * as pc from 'playcanvas';
-import {difference, random, seed} from '/tests/pictures.js';
+import {difference, pixels_of, random, seed} from '/tests/pictures.js';
 
 const lightbin = await load();
 
@@ -147,10 +147,7 @@ class Stage {
 
     draw() {
         this.render();
-        const {canvas, width, height} = this.app.graphicsDevice;
-        const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
-        context.drawImage(canvas, 0, 0);
-        return context.getImageData(0, 0, width, height).data;
+        return pixels_of(this.app.graphicsDevice.canvas);
     }
 
     /// The WorldClusters of the layers that were drawn.

@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: MIT
 // node --test tests/playcanvas/pictures.mjs: the adapter for PlayCanvas in headless Chromium.
 import assert from 'node:assert/strict';
-import {after, before, test} from 'node:test';
-import {open, same} from '../browser.mjs';
+import {before, test} from 'node:test';
+import {complaints, page, page_of_tests, same} from '../browser.mjs';
 
-let browser, page;
-before(async () => {
-    browser = await open(new URL('.', import.meta.url), 'Stage');
-    page = browser.page;
-    await page.evaluate(async () => {
-        window.stages = {};
-        for (const kind of ['own', 'lists', 'all']) stages[kind] = await new Stage(kind).start();
-        /// How the pictures of two stages differ, after the same was done to both.
-        window.compare = (one, other, change, draw = stage => stage.draw()) => {
-            const pictures = [one, other].map(kind => {
-                change(stages[kind]);
-                return draw(stages[kind]);
-            });
-            return difference(...pictures);
-        };
-    });
-});
-after(async () => {
-    await browser.close();
-    assert.deepEqual(browser.complaints, []);
-});
+page_of_tests(new URL('.', import.meta.url), 'Stage');
+before(() => page.evaluate(async () => {
+    window.stages = {};
+    for (const kind of ['own', 'lists', 'all']) stages[kind] = await new Stage(kind).start();
+    /// How the pictures of two stages differ, after the same was done to both.
+    window.compare = (one, other, change, draw = stage => stage.draw()) => {
+        const pictures = [one, other].map(kind => {
+            change(stages[kind]);
+            return draw(stages[kind]);
+        });
+        return difference(...pictures);
+    };
+}));
 
 // Where PlayCanvas lists all lights it adds the same ones in the same order, but by another program.
 for (const [points, spots] of [[70, 30], [300, 49]])
@@ -278,7 +270,7 @@ test('where it can make no cells it lists all lights in one, says so once, and m
     });
     for (const [name, result] of Object.entries(results)) same(result, name, name === 'an endless light' ? 1 : 0);
     const causes = [/NaN/, /at least 1 slice/, /40000/, /fit into a texture/, /2\^80/];
-    const warnings = browser.complaints.splice(0);
+    const warnings = complaints.splice(0);
     assert.equal(warnings.length, causes.length, `${warnings}`);
     causes.forEach((cause, i) => assert.match(warnings[i], cause));
 });

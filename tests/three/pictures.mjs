@@ -3,18 +3,10 @@
 // are the folders of these packages.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import {after, before, test} from 'node:test';
-import {open, same} from '../browser.mjs';
+import {test} from 'node:test';
+import {complaints, page, page_of_tests, same} from '../browser.mjs';
 
-let browser, page;
-before(async () => {
-    browser = await open(new URL('.', import.meta.url), 'stage');
-    page = browser.page;
-});
-after(async () => {
-    await browser.close();
-    assert.deepEqual(browser.complaints, []);
-});
+page_of_tests(new URL('.', import.meta.url), 'stage');
 
 // Rounding differs, as three.js' own shader is another program: by 1 of 255 at most.
 test('100 lights: as three.js draws them itself', async () => {
@@ -154,7 +146,7 @@ test('pictures within pictures, and targets of other sizes: as three.js draws th
                 stage.model.visible = true;
                 return {result: difference(own, lists), says};
             }, name);
-            const warnings = browser.complaints.splice(0);
+            const warnings = complaints.splice(0);
             assert.equal(warnings.length, says.length, `${warnings}`);
             says.forEach((words, i) => assert.ok(warnings[i].includes(words), warnings[i]));
             same(result, name, 1);
@@ -247,7 +239,7 @@ test('it throws nothing out of render(): what has no lists is said once, and aft
         scene.onBeforeRender = update;
         return difference(own, stage.draw());
     });
-    const [nan, ...others] = browser.complaints.splice(0);
+    const [nan, ...others] = complaints.splice(0);
     assert.match(nan, /NaN/);
     assert.deepEqual(others, []);
     same(result);

@@ -3,18 +3,10 @@
 // with WebGL 2. THREE, LIGHTBIN and PLAYWRIGHT are the folders of these packages.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import {after, before, test} from 'node:test';
-import {open, same} from '../browser.mjs';
+import {test} from 'node:test';
+import {complaints, page, page_of_tests, same} from '../browser.mjs';
 
-let browser, page;
-before(async () => {
-    browser = await open(new URL('.', import.meta.url), 'stage', 'webgpu_page.html');
-    page = browser.page;
-});
-after(async () => {
-    await browser.close();
-    assert.deepEqual(browser.complaints, []);
-});
+page_of_tests(new URL('.', import.meta.url), 'stage', 'webgpu_page.html');
 
 for (const backend of ['webgpu', 'webgl']) {
     // The result of three.js' own clusters is only shown.
@@ -114,7 +106,7 @@ test('what has no lists is said once, and after dispose() nothing is left', asyn
         stage.own();
         return {difference: difference(own, picture), made, left: stage.lightbin.allocations - before};
     });
-    const [nan, ...others] = browser.complaints.splice(0);
+    const [nan, ...others] = complaints.splice(0);
     assert.match(nan, /NaN/);
     assert.deepEqual(others, []);
     same(result.difference, 'a picture', 1);

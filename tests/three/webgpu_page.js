@@ -7,7 +7,7 @@ import * as THREE from 'three/webgpu';
 import {ClusteredLighting as OwnClusters} from 'three/addons/lighting/ClusteredLighting.js';
 import {DynamicLighting} from 'three/addons/lighting/DynamicLighting.js';
 import {Lit} from '/scene.js';
-import {difference} from '/tests/pictures.js';
+import {difference, pixels_of} from '/tests/pictures.js';
 
 class Stage extends Lit {
     OwnClusters = OwnClusters;
@@ -60,13 +60,7 @@ class Stage extends Lit {
         return this.pixels();
     }
 
-    /// Those of the canvas, in the task that has drawn them.
-    pixels() {
-        const {domElement, domElement: {width, height}} = this.renderer;
-        const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
-        context.drawImage(domElement, 0, 0);
-        return context.getImageData(0, 0, width, height).data;
-    }
+    pixels() { return pixels_of(this.renderer.domElement); }
 }
 
 const stage = new Stage();
