@@ -341,18 +341,15 @@ class Core {
         return at;
     }
 
-    /// Lets `called` write items of `words` words each, at most `count`, to a block, and returns them as an array.
-    items(Type, block, words, count, called, ...given) {
-        const at = block.reserve(4 * words * Math.max(count, 1)), written = this.c.stackAlloc(4);
-        this.check(called, ...given, at, count, written);
-        return new Type(this.c.memory.buffer, at, words * this.heap().getUint32(written, true));
-    }
-
-    /// Returns a copy of the array that body() makes in a block.
-    copied(body) {
+    /// Returns what `called` writes of a view or slices: an array of `length` words, `words` of them an item.
+    items(Type, length, words, called, from) {
         const block = new Block(this);
         try {
-            return this.scope(() => body(block).slice());
+            return this.scope(() => {
+                const at = block.reserve(4 * length);
+                this.check(called, from, at, length / words);
+                return this.copy(Type, at, 4 * length);
+            });
         } finally {
             block.free();
         }
@@ -480,9 +477,8 @@ class View extends Held {
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
     }
     shaderEdges() {
-        const core = this.#core, {tilesX = 0, tilesY = 0} = this.info;
-        return core.copied(edges => core.items(Float32Array, edges, 2, tilesX + tilesY, core.c.lightbin_shader_edges,
-                                               this[address]));
+        const core = this.#core, {tilesX, tilesY} = this.info;
+        return core.items(Float32Array, 2 * (tilesX + tilesY), 2, core.c.lightbin_shader_edges, this[address]);
     }
     #constants(Type, struct, called, ...given) {
         const core = this.#core;
@@ -519,17 +515,12 @@ class Slices extends Held {
     }
     at(depth) { return this.#core.c.lightbin_slices_at(this[address], real(depth, 'depth')); }
     shaderWords() {
-        const core = this.#core, count = this.count + 3;
-        return core.copied(words => {
-            const at = words.reserve(4 * count);
-            core.check(core.c.lightbin_shader_slices, this[address], at, count);
-            return new Uint32Array(core.c.memory.buffer, at, count);
-        });
+        const core = this.#core;
+        return core.items(Uint32Array, this.count + 3, 1, core.c.lightbin_shader_slices, this[address]);
     }
     shaderSlabs() {
         const core = this.#core;
-        return core.copied(slabs => core.items(Float32Array, slabs, 2, this.count, core.c.lightbin_shader_slabs,
-                                               this[address]));
+        return core.items(Float32Array, 2 * this.count, 2, core.c.lightbin_shader_slabs, this[address]);
     }
     dispose() {
         this.#core.c.lightbin_slices_destroy(this[release]());

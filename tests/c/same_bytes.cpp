@@ -532,12 +532,13 @@ TEST_CASE("C: the data that shaders read is that of C++") {
     std::vector<std::uint32_t> words(12);
     works(lightbin_shader_slices(slices.get(), words.data(), words.size()));
     CHECK(words == shader_slices(cpp_slices));
-    std::size_t number = 0;
     lightbin_edges edges[100];
-    works(lightbin_shader_edges(view.get(), edges, 100, &number));
-    CHECK(equal(shader_edges(cpp_view), edges, number));
-    works(lightbin_shader_slabs(slices.get(), edges, 100, &number));
-    CHECK(equal(shader_slabs(cpp_slices), edges, number));
+    const auto cpp_edges = shader_edges(cpp_view), cpp_slabs = shader_slabs(cpp_slices);
+    CHECK(lightbin_shader_edges(view.get(), edges, cpp_edges.size() - 1).error == LIGHTBIN_BUFFER_TOO_SMALL);
+    works(lightbin_shader_edges(view.get(), edges, cpp_edges.size()));
+    CHECK(equal(cpp_edges, edges, 27 + 15));
+    works(lightbin_shader_slabs(slices.get(), edges, 9));
+    CHECK(equal(cpp_slabs, edges, 9));
 }
 
 TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are those of C++") {

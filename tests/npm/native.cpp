@@ -225,12 +225,11 @@ int main(int count, char** names) {
     const std::size_t length = lightbin_view_text(view, text, sizeof text);
     if (length >= sizeof text) return EXIT_FAILURE;
     write_block(text, length);
-    lightbin_edges edges[WIDTH];
-    std::size_t written = 0;
-    succeed(lightbin_shader_edges(view, edges, WIDTH, &written));
-    write_block(edges, written * sizeof *edges);
-    succeed(lightbin_shader_slabs(slices, edges, WIDTH, &written));
-    write_block(edges, written * sizeof *edges);
+    lightbin_edges edges[21 + 13], slabs[17];
+    succeed(lightbin_shader_edges(view, edges, 21 + 13));
+    write_block(edges, sizeof edges);
+    succeed(lightbin_shader_slabs(slices, slabs, 17));
+    write_block(slabs, sizeof slabs);
     lightbin_reduce_constants reduce = {};
     succeed(lightbin_get_reduce_constants(view, 3, 5, &reduce));
     write_block(&reduce, sizeof reduce);

@@ -189,12 +189,10 @@ template <class To, class From> auto* same_layout(From* from) {
     return reinterpret_cast<std::conditional_t<std::is_const_v<From>, const To, To>*>(from);
 }
 
-/// Copies `needed` items to the caller's memory and writes their number to *count, if that is given.
+/// Copies `needed` items to the caller's memory.
 template <class From, class To>
-lightbin_result write_items(const From* from, std::size_t needed, To* to, std::size_t capacity,
-                            std::size_t* count, const char* name) {
+lightbin_result write_items(const From* from, std::size_t needed, To* to, std::size_t capacity, const char* name) {
     static_assert(sizeof(From) == sizeof(To));
-    if (count != nullptr) *count = needed;
     if (to == nullptr && needed > 0 && capacity > 0) return refused(LIGHTBIN_NULL_ARGUMENT, name);
     if (capacity < needed) return refused(LIGHTBIN_BUFFER_TOO_SMALL, name, needed, capacity);
     if (needed > 0) std::memcpy(to, from, needed * sizeof *from);

@@ -80,29 +80,20 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
         filled.tile_bytes = made->bytes.tiles;
         filled.list_bytes = made->bytes.lists;
         filled.mask_bytes = made->bytes.masks;
-        write_items(made->groups, std::size(made->groups), filled.groups, std::size(filled.groups), nullptr, "");
+        static_assert(sizeof filled.groups == sizeof made->groups);
+        std::memcpy(filled.groups, made->groups, sizeof made->groups);
         static_assert(sizeof filled.constants >= sizeof made->constants);
         std::memcpy(filled.constants, &made->constants, sizeof made->constants);
         return write(filled, plan);
     });
 }
 
-lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, std::size_t capacity,
-                                      std::size_t* count) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{view, "view"}, {count, "count"}}), [&] {
-        const auto made = lightbin::shader_edges(view->value);
-        return write_items(made.data(), made.size(), edges, capacity, count, "edges");
-    });
+lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, std::size_t capacity) {
+    return lightbin::c::write_array<lightbin::shader_edges>(view, "view", edges, capacity, "edges");
 }
 
-lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs, std::size_t capacity,
-                                      std::size_t* count) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{slices, "slices"}, {count, "count"}}), [&] {
-        const auto made = lightbin::shader_slabs(slices->value);
-        return write_items(made.data(), made.size(), slabs, capacity, count, "slabs");
-    });
+lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs, std::size_t capacity) {
+    return lightbin::c::write_array<lightbin::shader_slabs>(slices, "slices", slabs, capacity, "slabs");
 }
 
 }  // extern "C"

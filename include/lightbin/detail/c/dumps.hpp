@@ -25,7 +25,8 @@ lightbin_result lightbin_dump(const lightbin_binner* binner, const lightbin_view
     return call_if(result, [&] {
         const lightbin::Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
         const auto write = [&](const std::string& made) {
-            return write_items(made.c_str(), made.size() + 1, text, capacity, size, "text");
+            if (size != nullptr) *size = made.size() + 1;
+            return write_items(made.c_str(), made.size() + 1, text, capacity, "text");
         };
         if (masks != nullptr)
             return write(lightbin::detail::dump(

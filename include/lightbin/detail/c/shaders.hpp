@@ -37,7 +37,16 @@ template <auto make, class To, class... Arguments>
 lightbin_result write_constants(const lightbin_view* view, To* to, const Arguments&... arguments) {
     return call_if(check_pointers({{view, "view"}, {to, "constants"}}), [&] {
         const auto made = make(view->value, arguments...);
-        return write_items(&made, 1, to, 1, nullptr, "constants");
+        return write_items(&made, 1, to, 1, "constants");
+    });
+}
+
+/// Writes the array that make() returns of a view or slices to the caller's memory.
+template <auto make, class From, class To>
+lightbin_result write_array(const From* from, const char* from_name, To* to, std::size_t capacity, const char* to_name) {
+    return call_if(check_pointers({{from, from_name}}), [&] {
+        const auto made = make(from->value);
+        return write_items(made.data(), made.size(), to, capacity, to_name);
     });
 }
 
@@ -105,13 +114,8 @@ lightbin_result lightbin_get_view_constants(const lightbin_view* view, float tol
     return lightbin::c::write_constants<lightbin::view_constants>(view, constants, tolerance);
 }
 
-lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint32_t* words,
-                                       std::size_t capacity) {
-    using namespace lightbin::c;
-    return call_if(check_pointers({{slices, "slices"}}), [&] {
-        const std::vector<std::uint32_t> made = lightbin::shader_slices(slices->value);
-        return write_items(made.data(), made.size(), words, capacity, nullptr, "words");
-    });
+lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint32_t* words, std::size_t capacity) {
+    return lightbin::c::write_array<lightbin::shader_slices>(slices, "slices", words, capacity, "words");
 }
 
 lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options, lightbin_shader** shader) {
