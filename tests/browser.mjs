@@ -3,7 +3,7 @@
 // playwright-core.
 import assert from 'node:assert/strict';
 import path from 'node:path';
-import {after, before} from 'node:test';
+import {after} from 'node:test';
 import {pathToFileURL} from 'node:url';
 import {serve} from './server.mjs';
 
@@ -44,16 +44,14 @@ export async function open(folder, name, file = 'tests/page.html') {
     }};
 }
 
-export let page, complaints;
-
-/// Opens a page before the tests of a file, and closes it after them. They take out the complaints that they expect.
-export function page_of_tests(...given) {
-    let close;
-    before(async () => { ({page, complaints, close} = await open(...given)); });
+/// Opens a page for the tests of a file, and closes it after them. They take out the complaints that they expect.
+export async function page_of_tests(...given) {
+    const {page, complaints, close} = await open(...given);
     after(async () => {
         await close();
         assert.deepEqual(complaints, []);
     });
+    return {page, complaints};
 }
 
 /// Asserts of the difference() of two pictures that they are at most `apart` of 255 apart, and not dark.

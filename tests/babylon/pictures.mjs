@@ -2,11 +2,11 @@
 // node --test tests/babylon/pictures.mjs: the adapter for Babylon.js in headless Chromium.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
-import {before, test} from 'node:test';
-import {complaints, complaints_of, page, page_of_tests, same} from '../browser.mjs';
+import {test} from 'node:test';
+import {complaints_of, page_of_tests, same} from '../browser.mjs';
 
-page_of_tests(new URL('.', import.meta.url), 'Stage');
-before(() => page.evaluate(() => {
+const {page, complaints} = await page_of_tests(new URL('.', import.meta.url), 'Stage');
+await page.evaluate(() => {
     /// Makes stages of some kinds, and ends them after body().
     window.among = async (kinds, options, body) => {
         const stages = [];
@@ -15,7 +15,7 @@ before(() => page.evaluate(() => {
         for (const stage of stages) stage.destroy();
         return result;
     };
-}));
+});
 
 /// Where lights are added in another order, a byte may differ by 1.
 function nearly(result, what) {

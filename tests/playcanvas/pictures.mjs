@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // node --test tests/playcanvas/pictures.mjs: the adapter for PlayCanvas in headless Chromium.
 import assert from 'node:assert/strict';
-import {before, test} from 'node:test';
-import {complaints, page, page_of_tests, same} from '../browser.mjs';
+import {test} from 'node:test';
+import {page_of_tests, same} from '../browser.mjs';
 
-page_of_tests(new URL('.', import.meta.url), 'Stage');
-before(() => page.evaluate(async () => {
+const {page, complaints} = await page_of_tests(new URL('.', import.meta.url), 'Stage');
+await page.evaluate(async () => {
     window.stages = {};
     for (const kind of ['own', 'lists', 'all']) stages[kind] = await new Stage(kind).start();
     /// How the pictures of two stages differ, after the same was done to both.
@@ -16,7 +16,7 @@ before(() => page.evaluate(async () => {
         });
         return difference(...pictures);
     };
-}));
+});
 
 // Where PlayCanvas lists all lights it adds the same ones in the same order, but by another program.
 for (const [points, spots] of [[70, 30], [300, 49]])

@@ -4,9 +4,9 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {test} from 'node:test';
-import {complaints, page, page_of_tests, same} from '../browser.mjs';
+import {page_of_tests, same} from '../browser.mjs';
 
-page_of_tests(new URL('.', import.meta.url), 'stage');
+const {page, complaints} = await page_of_tests(new URL('.', import.meta.url), 'stage');
 
 // Rounding differs, as three.js' own shader is another program: by 1 of 255 at most.
 test('100 lights: as three.js draws them itself', async () => {

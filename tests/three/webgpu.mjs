@@ -4,9 +4,9 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {test} from 'node:test';
-import {complaints, page, page_of_tests, same} from '../browser.mjs';
+import {page_of_tests, same} from '../browser.mjs';
 
-page_of_tests(new URL('.', import.meta.url), 'stage', 'webgpu_page.html');
+const {page, complaints} = await page_of_tests(new URL('.', import.meta.url), 'stage', 'webgpu_page.html');
 
 for (const backend of ['webgpu', 'webgl']) {
     // The result of three.js' own clusters is only shown.
