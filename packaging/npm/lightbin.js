@@ -823,16 +823,13 @@ class Lightbin {
     binner(options) { return new Binner(this.#core, options); }
     floats(length) { return new Floats(this.#core, length); }
     exponentialSlices(options) {
-        const {count, first, last, margin = 0} = only(options, ['count', 'first', 'last', 'margin'], 'options');
-        const core = this.#core;
-        return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'),
-            ...reals({first, last}), margin));
+        return this.#slices(this.#core.c.lightbin_slices_exponential, options, 'first', 'last');
     }
-    linearSlices(options) {
-        const {count, begin, end, margin = 0} = only(options, ['count', 'begin', 'end', 'margin'], 'options');
-        const core = this.#core;
-        return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'),
-            ...reals({begin, end}), margin));
+    linearSlices(options) { return this.#slices(this.#core.c.lightbin_slices_linear, options, 'begin', 'end'); }
+    #slices(called, options, ...ends) {
+        const {count, margin = 0} = only(options, ['count', ...ends, 'margin'], 'options'), core = this.#core;
+        return new Slices(core, margin, () => core.create(called, whole(count, 'count'),
+            ...ends.map(end => real(options[end], end)), margin));
     }
     slicesFromBoundaries(options) {
         const {boundaries, margin = 0} = only(options, ['boundaries', 'margin'], 'options');

@@ -57,11 +57,6 @@ class Stage extends Lit {
         }
     }
 
-    draw(camera = this.camera) {
-        renderer.render(this.scene, camera);
-        return this.pixels();
-    }
-
     pixels() {
         const gl = renderer.getContext(), {drawingBufferWidth: width, drawingBufferHeight: height} = gl;
         const pixels = new Uint8Array(4 * width * height);

@@ -40,6 +40,26 @@ export class Lit {
         this.other.lookAt(0, 0, 0);
     }
 
+    draw(camera = this.camera) {
+        this.renderer.render(this.scene, camera);
+        return this.pixels();
+    }
+
+    /// A camera of what two eyes see, each in its viewport, as WebXR draws it.
+    eyes(...viewports) {
+        const both = new THREE.ArrayCamera(viewports.map((viewport, i) => {
+            const eye = new THREE.PerspectiveCamera(70 + 10 * i, 1, 0.1, 150);
+            eye.position.set(5.6 + i, 5 - i, 16);
+            eye.lookAt(2 * i, -2, 0);
+            eye.updateMatrixWorld();
+            eye.viewport = new THREE.Vector4(...viewport);
+            return eye;
+        }));
+        both.position.set(6, 5, 17);
+        both.lookAt(0, -2, 0);
+        return both;
+    }
+
     /// Puts `points` and `spots` lights in the place of those that there are.
     lights(points, spots, {range = 4} = {}) {
         seed(1);

@@ -120,18 +120,9 @@ function glass(scale, ...viewport) {
     }};
 }
 
-/// What two eyes see, side by side in a part of the window, as WebXR draws it.
+/// What two eyes see in a part of the window.
 function eyes(setting = {undo: () => {}}) {
-    const both = new THREE.ArrayCamera([-0.4, 0.6].map((x, i) => {
-        const eye = new THREE.PerspectiveCamera(70 + 10 * i, 1, 0.1, 150);
-        eye.position.set(6 + x, 5 - i, 16);
-        eye.lookAt(2 * i, -2, 0);
-        eye.updateMatrixWorld();
-        eye.viewport = new THREE.Vector4(7 + 95 * i, 5 + 9 * i, 93 - 9 * i, 100);
-        return eye;
-    }));
-    both.position.set(6, 5, 17);
-    both.lookAt(0, -2, 0);
+    const both = stage.eyes([7, 5, 93, 100], [102, 14, 84, 100]);
     return {...setting, draw: () => stage.draw(both)};
 }
 

@@ -55,11 +55,6 @@ class Stage extends Lit {
     all() { this.light(this.all_lights[this.backend]); }
     cluster(options) { this.light(new ClusteredLighting(this.lightbin, options)); }
 
-    draw(camera = this.camera) {
-        this.renderer.render(this.scene, camera);
-        return this.pixels();
-    }
-
     pixels() { return pixels_of(this.renderer.domElement); }
 }
 

@@ -83,18 +83,8 @@ function post_processing() {
     };
 }
 
-/// What two eyes see, side by side, as WebXR draws it.
 function eyes() {
-    const both = new THREE.ArrayCamera([-0.4, 0.6].map((x, i) => {
-        const eye = new THREE.PerspectiveCamera(70 + 10 * i, 1, 0.1, 150);
-        eye.position.set(6 + x, 5 - i, 16);
-        eye.lookAt(2 * i, -2, 0);
-        eye.updateMatrixWorld();
-        eye.viewport = new THREE.Vector4(160 * i, 0, 160, 200);
-        return eye;
-    }));
-    both.position.set(6, 5, 17);
-    both.lookAt(0, -2, 0);
+    const both = stage.eyes([0, 0, 160, 200], [160, 0, 160, 200]);
     return {draw: () => stage.draw(both), undo: () => {}};
 }
 
