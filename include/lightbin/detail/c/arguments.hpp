@@ -189,6 +189,12 @@ template <class To, class From> auto* same_layout(From* from) {
     return reinterpret_cast<std::conditional_t<std::is_const_v<From>, const To, To>*>(from);
 }
 
+/// Copies a struct of numbers to the caller's memory, an array or a struct of the same numbers.
+template <class Numbers> lightbin_result write_numbers(const Numbers& made, void* to) {
+    std::memcpy(to, &made, sizeof made);
+    return succeeded();
+}
+
 /// Copies `needed` items to the caller's memory.
 template <class From, class To>
 lightbin_result write_items(const From* from, std::size_t needed, To* to, std::size_t capacity, const char* name) {

@@ -35,10 +35,9 @@ inline lightbin_result read_member(const lightbin_slot& given, ShaderSlot& known
 /// Writes the constants that make() returns of a view to the caller's struct, which has the layout of the library's.
 template <auto make, class To, class... Arguments>
 lightbin_result write_constants(const lightbin_view* view, To* to, const Arguments&... arguments) {
-    return call_if(check_pointers({{view, "view"}, {to, "constants"}}), [&] {
-        const auto made = make(view->value, arguments...);
-        return write_items(&made, 1, to, 1, "constants");
-    });
+    static_assert(sizeof(To) == sizeof(make(view->value, arguments...)));
+    return call_if(check_pointers({{view, "view"}, {to, "constants"}}),
+                   [&] { return write_numbers(make(view->value, arguments...), to); });
 }
 
 /// Writes the array that make() returns of a view or slices to the caller's memory.

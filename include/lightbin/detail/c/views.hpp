@@ -119,30 +119,20 @@ std::size_t lightbin_view_text(const lightbin_view* view, char* text, std::size_
 
 lightbin_result lightbin_view_project(const lightbin_view* view, const double* point, double* image) {
     using namespace lightbin::c;
-    return call_if(check_pointers({{view, "view"}, {point, "point"}, {image, "image"}}), [&] {
-        const auto made = view->value.image_point({point[0], point[1], point[2]});
-        std::memcpy(image, &made, sizeof made);
-        return succeeded();
-    });
+    return call_if(check_pointers({{view, "view"}, {point, "point"}, {image, "image"}}),
+                   [&] { return write_numbers(view->value.image_point({point[0], point[1], point[2]}), image); });
 }
 
 lightbin_result lightbin_view_unproject(const lightbin_view* view, const double* image, double* point) {
     using namespace lightbin::c;
-    return call_if(check_pointers({{view, "view"}, {image, "image"}, {point, "point"}}), [&] {
-        const auto made = view->value.view_point({image[0], image[1], image[2]});
-        std::memcpy(point, &made, sizeof made);
-        return succeeded();
-    });
+    return call_if(check_pointers({{view, "view"}, {image, "image"}, {point, "point"}}),
+                   [&] { return write_numbers(view->value.view_point({image[0], image[1], image[2]}), point); });
 }
 
 lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, double upper, float* depths) {
     using namespace lightbin::c;
-    return call_if(check_pointers({{view, "view"}, {depths, "depths"}}), [&] {
-        const lightbin::DepthInterval range = view->value.view_depths(lower, upper);
-        depths[0] = range.min;
-        depths[1] = range.max;
-        return succeeded();
-    });
+    return call_if(check_pointers({{view, "view"}, {depths, "depths"}}),
+                   [&] { return write_numbers(view->value.view_depths(lower, upper), depths); });
 }
 
 float lightbin_view_window_depth(const lightbin_view* view, const double* image) {
