@@ -64,13 +64,13 @@ inline Text text_of(const lightbin_result& result) {
 }
 
 /// Copies a text to the caller's memory, cut to its capacity, and returns the length of the whole text.
-inline std::size_t write_text(const char* text, std::size_t length, char* to, std::size_t capacity) {
+inline std::size_t write_text(const Text& text, char* to, std::size_t capacity) {
     if (to != nullptr && capacity > 0) {
-        const std::size_t kept = detail::min_of(length, capacity - 1);
-        std::memcpy(to, text, kept);
+        const std::size_t kept = detail::min_of(text.size(), capacity - 1);
+        std::memcpy(to, text.c_str(), kept);
         to[kept] = 0;
     }
-    return length;
+    return text.size();
 }
 
 /// The greatest `size` of a caller's struct, which may be any number if the caller did not set it: memory further

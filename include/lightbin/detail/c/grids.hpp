@@ -18,14 +18,12 @@ template <class Body> lightbin_result with_grid(const lightbin_grid* given, cons
                              check_array(grid.ids, grid.id_count, "grid.ids"));
     if (result.error != LIGHTBIN_OK) return result;
     const auto with = [&]<class Id>(const Id* ids) {
-        return call_if(succeeded(), [&] {
-            const auto size = [](std::uint64_t count) { return static_cast<std::size_t>(count); };
-            return body(LightGrid<Id>(
-                grid.tiles_x, grid.tiles_y, {same_layout<ListRange>(grid.ranges), size(grid.range_count)},
-                {ids, size(grid.id_count)}, {grid.lights, grid.rejected, grid.culled, grid.first_spot, grid.first_box},
-                grid.slices,
-                {{grid.order, size(grid.order_count)}, {same_layout<BinRange>(grid.bins), size(grid.bin_count)}}));
-        });
+        const auto size = [](std::uint64_t count) { return static_cast<std::size_t>(count); };
+        return body(LightGrid<Id>(
+            grid.tiles_x, grid.tiles_y, {same_layout<ListRange>(grid.ranges), size(grid.range_count)},
+            {ids, size(grid.id_count)}, {grid.lights, grid.rejected, grid.culled, grid.first_spot, grid.first_box},
+            grid.slices,
+            {{grid.order, size(grid.order_count)}, {same_layout<BinRange>(grid.bins), size(grid.bin_count)}}));
     };
 #if defined(LIGHTBIN_NO_U16)
     if (grid.id_bytes == 2) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_U16");

@@ -69,8 +69,7 @@ lightbin_result make_slices(float margin, const lightbin_result& checked, lightb
 extern "C" {
 
 std::size_t lightbin_error_text(lightbin_result result, char* text, std::size_t capacity) {
-    const lightbin::Text whole = lightbin::c::text_of(result);
-    return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
+    return lightbin::c::write_text(lightbin::c::text_of(result), text, capacity);
 }
 
 std::uint32_t lightbin_version(void) {
@@ -112,9 +111,7 @@ lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_
 }
 
 std::size_t lightbin_view_text(const lightbin_view* view, char* text, std::size_t capacity) {
-    if (view == nullptr) return 0;
-    const lightbin::Text whole = to_string(view->value.summary());
-    return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
+    return view != nullptr ? lightbin::c::write_text(to_string(view->value.summary()), text, capacity) : 0;
 }
 
 lightbin_result lightbin_view_project(const lightbin_view* view, const double* point, double* image) {
