@@ -160,18 +160,15 @@ struct CallLights {
         const auto of = [this]<class Given>(const Given& from) {
             return detail::Lights<Given, Kind<Given>>{{from.count}, from, to_view ? &*to_view : nullptr, given.eye};
         };
-        const auto join = []<class First, class Rest>(const First& first, const Rest& rest) {
-            return detail::JoinedLights<First, Rest>{first, rest};
-        };
         const auto spheres = of(given.spheres);
         if constexpr (spheres_alone)
             return spheres;
         else if constexpr (!detail::kinds_have_boxes)
-            return join(spheres, of(given.spots));
+            return lightbin::lights(spheres, of(given.spots));
         else if constexpr (!detail::kinds_have_spots)
-            return join(spheres, of(given.boxes));
+            return lightbin::lights(spheres, of(given.boxes));
         else
-            return join(spheres, join(of(given.spots), of(given.boxes)));
+            return lightbin::lights(spheres, of(given.spots), of(given.boxes));
     }
 };
 
