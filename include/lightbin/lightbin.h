@@ -358,6 +358,11 @@ typedef struct lightbin_lights {
     const double* eye;
 } lightbin_lights;
 
+/* Returns the distance at which a point light has fallen to a cutoff, sqrt(intensity / cutoff), rounded up: in metres
+ * for an intensity in candela and a cutoff in lux. An intensity of 0 or less gives 0; a cutoff of 0 or less gives +inf.
+ */
+LIGHTBIN_API float lightbin_light_range(float intensity, float cutoff);
+
 /* ---- Slices ---- */
 
 /* Adjacent intervals of view depth, for clusters and z-bins. */
@@ -626,7 +631,7 @@ typedef struct lightbin_snippet_options {
     int32_t wave_loop;       /* with masks: the lanes of a wave (subgroup) loop together over all that any lane has */
     int32_t view_check;      /* add the function `check_view`: whether a pixel shows a view-space position */
     int32_t list_check;      /* add the loop `for_each_missing` over the lights that a pixel's list lacks */
-    int32_t window;          /* add the function `window`, as lightbin_light_window() */
+    int32_t window;          /* add the function `window`, which falls smoothly from 1 at a light to 0 at its range */
     int32_t push_constants;  /* Vulkan: `grid` and `corner` are push constants */
     uint32_t texture_width;  /* of 2D textures: texels in a row, up to 16384; 0: 2048 */
     /* With uniform blocks, which have a fixed size: the most tiles in all slices and views, ids in all lists, slices.
@@ -910,17 +915,6 @@ typedef struct lightbin_edges {
 LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, size_t capacity);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity);
-
-/* ---- Lights' ranges ---- */
-
-/* Returns the distance at which a point light has fallen to a cutoff, sqrt(intensity / cutoff), rounded up: in metres
- * for an intensity in candela and a cutoff in lux. An intensity of 0 or less gives 0; a cutoff of 0 or less gives +inf.
- */
-LIGHTBIN_API float lightbin_light_range(float intensity, float cutoff);
-
-/* Returns the factor by which to multiply a light so that it fades smoothly to nothing at its range, and no seams show
- * at the borders of tiles: (1 - (distance / range)^4)^2, and 0 from the range on. A range of +inf gives 1. */
-LIGHTBIN_API float lightbin_light_window(float distance, float range);
 
 #if defined(__cplusplus)
 } /* extern "C" */

@@ -468,9 +468,6 @@ export interface Lightbin {
     dump(made: Grid | Masks, view: View, lights: Lights, inputs?: Inputs): Promise<string>;
     /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
     lightRange(intensity: number, cutoff: number): number;
-    /** Returns the factor that fades a light smoothly to nothing at its range, as the shader text's `window` does:
-     * (1 - (distance / range) ** 4) ** 2, and 0 from the range on. */
-    lightWindow(distance: number, range: number): number;
     /** How many blocks of the module's memory views, slices, binners and floats hold: 0 when all were disposed of. */
     readonly allocations: number;
 }

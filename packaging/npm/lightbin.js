@@ -883,7 +883,6 @@ class Lightbin {
         }
     }
     lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(...reals({intensity, cutoff})); }
-    lightWindow(distance, range) { return this.#core.c.lightbin_light_window(...reals({distance, range})); }
     get allocations() {
         const live = ({c, staging}) => c.live_allocations() - (staging.at !== 0 ? 1 : 0);
         return this.#cores.reduce((sum, core) => sum + live(core), 0);

@@ -526,7 +526,6 @@ TEST_CASE("C: the data that shaders read is that of C++") {
     works(lightbin_get_reduce_constants(view.get(), 3, 4, &reduce));
     CHECK(same(reduce, reduce_constants(cpp_view, 3, 4)));
     CHECK(lightbin_light_range(100, 0.01f) == light_range(100, 0.01f));
-    CHECK(lightbin_light_window(1, 3) == light_window(1, 3));
     CHECK(lightbin_slices_at(slices.get(), 30) == cpp_slices.slice_at(30));
     CHECK(equal(cpp_slices.boundaries(), lightbin_slices_boundaries(slices.get()), 8));
     std::vector<std::uint32_t> words(12);

@@ -126,7 +126,7 @@ test_both('both modules make the bytes of this machine\'s library', async lightb
     same(Float32Array.from(view.depths(0.25, 0.5)), 'view depths');
     same(Float32Array.of(view.windowDepth(image)), 'window depth');
     for (const depth of [-3, 1.5, 20, Infinity]) same(Int32Array.of(slices.at(depth)), `slice at ${depth}`);
-    same(Float32Array.of(lightbin.lightRange(100, 0.01), ...[1, 5].map(at => lightbin.lightWindow(at, 3))), 'lights');
+    same(Float32Array.of(lightbin.lightRange(100, 0.01)), 'lights');
     same(view.gridConstants(5, 7), 'grid constants');
     const turned = lightbin.view({...square, tileSize: 0, columns: 16, rows: 9}), counted = turned.info;
     assert.deepEqual([counted.tileSize, counted.tilesX, counted.tilesY, counted.turned], [0, 16, 9, 0]);
@@ -324,7 +324,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => lightbin.slicesFromBoundaries({boundaries: [1, [2]]}), /^boundaries: element 1 is no number$/],
             [() => slices.at(1n), /^depth: 1 is no number$/],
             [() => lightbin.lightRange(1), /^cutoff: undefined is no number$/],
-            [() => lightbin.lightWindow(1n, 2), /^distance: 1 is no number$/],
+            [() => lightbin.lightRange(1n, 2), /^intensity: 1 is no number$/],
             [() => lightbin.floats(1.5), /^length: /],
             [() => binner.bin(new Proxy(view, {}), lights), /^view was not made by this module$/],
             [() => binner.bin(strange, lights), /^view was not made by this module$/],

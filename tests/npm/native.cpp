@@ -209,7 +209,7 @@ int main(int count, char** names) {
     write_numbers({lightbin_view_window_depth(view, image)});
     for (const float depth : {-3.0f, 1.5f, 20.0f, std::numeric_limits<float>::infinity()})
         write_numbers({lightbin_slices_at(slices, depth)});
-    write_numbers({lightbin_light_range(100, 0.01f), lightbin_light_window(1, 3), lightbin_light_window(5, 3)});
+    write_numbers({lightbin_light_range(100, 0.01f)});
 
     // What shaders read of views and slices.
     lightbin_grid_constants grid_constants = {};

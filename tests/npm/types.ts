@@ -16,7 +16,7 @@ export async function use(gl: WebGL2RenderingContext) {
     gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + width);
     gl.bufferData(gl.ARRAY_BUFFER, data, view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);
     console.log(await lightbin.dump(grid, view, {spheres}, {slices}));
-    console.log(await lightbin.viewText(view), view.windowDepth([0, 0, depth]), lightbin.lightWindow(1, 2));
+    console.log(await lightbin.viewText(view), view.windowDepth([0, 0, depth]), lightbin.lightRange(1, 2));
     // @ts-expect-error
     grid.texels('words', 64);
     // @ts-expect-error

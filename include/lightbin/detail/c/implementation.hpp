@@ -21,8 +21,4 @@ float lightbin_light_range(float intensity, float cutoff) {
     return lightbin::light_range(intensity, cutoff);
 }
 
-float lightbin_light_window(float distance, float range) {
-    return lightbin::light_window(distance, range);
-}
-
 }  // extern "C"
