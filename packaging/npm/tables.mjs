@@ -24,7 +24,6 @@ const named = name => script.includes(`'${camel(name)}'`) || script.includes(`st
 const structs = {};
 const sizes = {int32_t: 4, uint32_t: 4, uint64_t: 8, float: 4, double: 8, size_t: 4, pointer: 4};
 for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.*?)\n\} lightbin_\1;/gs)) {
-    if (/\(\*/.test(body)) continue;  // a member is a function
     const struct = structs[name] = {bytes: 0, alignment: 1, members: {}};
     // The comment after a member may say that it is "a lightbin_NAME", an enum's value, or name the values that it may
     // have.
