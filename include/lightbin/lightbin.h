@@ -911,7 +911,7 @@ typedef struct lightbin_edges {
 } lightbin_edges;
 
 /* Write what the shaders of lightbin_cull_shader() read in the buffer `z_bounds` with a depth test: the two sides of
- * each tile column and then of each tile row; the depths of each slice. Errors: LIGHTBIN_BUFFER_TOO_SMALL. */
+ * each of tiles_x columns and then of tiles_y rows; the depths of each slice. Errors: LIGHTBIN_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, size_t capacity);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity);
