@@ -14,8 +14,6 @@ build_npm_package chromium
 
 tests=build/babylon-tests
 fetch_npm $tests @babylonjs/core@9.35.0 playwright-core@1.65.1
-modules=$PWD/$tests/node_modules
-export BABYLON="$modules/@babylonjs/core" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 case ${1-} in
 --bench) exec node tests/babylon/bench.mjs ;;
 --serve) exec node tests/server.mjs 8000 tests/babylon ;;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Debian's Chromium without a window, with WebGL 2 and WebGPU on a software renderer. PLAYWRIGHT is the folder of
-// playwright-core.
+// Debian's Chromium without a window, with WebGL 2 and WebGPU on a software renderer. MODULES is the folder of
+// npm packages that has playwright-core.
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import {after} from 'node:test';
 import {pathToFileURL} from 'node:url';
 import {serve} from './server.mjs';
 
-const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT, 'index.mjs')));
+const {chromium} = await import(pathToFileURL(path.join(process.env.MODULES, 'playwright-core/index.mjs')));
 
 // Nothing is looked for outside of this machine.
 export const launch = () => chromium.launch({executablePath: '/usr/bin/chromium', args: [

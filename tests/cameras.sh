@@ -12,5 +12,4 @@ build_npm_package
 
 tests=build/camera-tests
 fetch_npm $tests gl-matrix@3.4.3 @babylonjs/core@9.35.0
-export MODULES="$PWD/$tests/node_modules" LIGHTBIN="$PWD/build/npm/lightbin"
 run_node_tests tests/npm/cameras.mjs $tests/cameras.log

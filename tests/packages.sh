@@ -56,11 +56,13 @@ install_packages() {
     rm -f "$log"
 }
 
-# fetch_npm FOLDER PACKAGE@VERSION...: npm packages in FOLDER/node_modules, fetched unless these versions are there.
+# fetch_npm FOLDER PACKAGE@VERSION...: npm packages in FOLDER/node_modules, fetched unless these versions are there. The
+# JavaScript of tests finds them by MODULES.
 fetch_npm() {
     fetched=$1
     shift
     mkdir -p "$fetched"
+    export MODULES="$PWD/$fetched/node_modules"
     for package; do
         # The prefix keeps it here: npm otherwise looks for a project in the folders above.
         grep -qs '"version": "'"${package##*@}"'"' "$fetched/node_modules/${package%@*}/package.json" ||
@@ -96,12 +98,14 @@ make_build_folder() {
     mkdir -p build && [ -w build ] || fail "cannot write to $(pwd)/build"
 }
 
-# build_npm_package [PACKAGE...]: makes build/npm/lightbin, and installs what that takes and the packages.
+# build_npm_package [PACKAGE...]: makes build/npm/lightbin, which is LIGHTBIN to the JavaScript of tests, and installs
+# what that takes and the packages.
 build_npm_package() {
     install_packages nodejs emscripten node-acorn binaryen esbuild "$@"
     command -v npm >/dev/null || install_packages npm
     make_build_folder
     sh packaging/npm/build.sh
+    export LIGHTBIN="$PWD/build/npm/lightbin"
 }
 
 # run_node_tests FILE LOG: runs tests of node, and says which passed. Where one fails, so does the script.

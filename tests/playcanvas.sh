@@ -14,7 +14,5 @@ build_npm_package chromium
 
 tests=build/playcanvas-tests
 fetch_npm $tests playcanvas@2.23.0 playwright-core@1.65.1
-modules=$PWD/$tests/node_modules
-export PLAYCANVAS="$modules/playcanvas" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 [ $# -eq 0 ] || exec node tests/server.mjs 8000 tests/playcanvas
 run_node_tests tests/playcanvas/pictures.mjs $tests/pictures.log

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// node server.mjs PORT FOLDER: serves a folder, the packages in the folders THREE, PLAYCANVAS, BABYLON and LIGHTBIN, and
-// in /tests/ this folder, to this machine alone.
+// node server.mjs PORT FOLDER: serves a folder, and as /modules/, /lightbin/ and /tests/ the folders MODULES, LIGHTBIN
+// and this one, to this machine alone.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 
-const folders = {three: process.env.THREE, playcanvas: process.env.PLAYCANVAS, babylon: process.env.BABYLON,
-                 lightbin: process.env.LIGHTBIN, tests: path.dirname(fileURLToPath(import.meta.url))};
+const folders = {modules: process.env.MODULES, lightbin: process.env.LIGHTBIN,
+                 tests: path.dirname(fileURLToPath(import.meta.url))};
 const types = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm'};
 // With these a page's clock has steps of 5 microseconds, and else of 100.
 const isolated = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};

@@ -14,8 +14,6 @@ build_npm_package chromium
 
 tests=build/three-tests
 fetch_npm $tests three@0.187.0 playwright-core@1.65.1
-modules=$PWD/$tests/node_modules
-export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 [ $# -eq 0 ] || exec node tests/server.mjs 8000 tests/three
 run_node_tests tests/three/pictures.mjs $tests/pictures.log
 run_node_tests tests/three/webgpu.mjs $tests/webgpu.log

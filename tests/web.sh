@@ -12,10 +12,8 @@ install_packages chromium fonts-dejavu-core nodejs libtinygltf-dev
 command -v npm >/dev/null || install_packages npm
 sh examples/web.sh --build
 
-playwright=playwright-core@1.65.1
 tests=build/web-tests
-fetch_npm $tests $playwright
-export PLAYWRIGHT="$PWD/$tests/node_modules/playwright-core"
+fetch_npm $tests playwright-core@1.65.1
 
 failed=
 node --no-warnings tests/web/lists.mjs build/web || failed=yes

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// node --test tests/three/pictures.mjs: the adapter for three.js in headless Chromium. THREE, LIGHTBIN and PLAYWRIGHT
-// are the folders of these packages.
+// node --test tests/three/pictures.mjs: the adapter for three.js in headless Chromium.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {test} from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // node --test tests/three/webgpu.mjs: the adapter for three.js' WebGPURenderer in headless Chromium, with WebGPU and
-// with WebGL 2. THREE, LIGHTBIN and PLAYWRIGHT are the folders of these packages.
+// with WebGL 2.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {test} from 'node:test';
