@@ -541,7 +541,7 @@ LIGHTBIN_API lightbin_result lightbin_bin_masks(lightbin_binner* binner, const l
  *
  * binner, view, lights, inputs  what lightbin_bin() or lightbin_bin_masks() was given. Lights are read once more
  * grid, masks                   what it filled in; the other one is null
- * text                          `capacity` characters; may be null if capacity is 0
+ * text                          `capacity` characters; null: only *size is written
  * size                          becomes the number of characters of the whole text, with the 0; may be null
  *
  * Errors: LIGHTBIN_BUFFER_TOO_SMALL, the text does not fit, and only *size is written; those of lightbin_bin() that are

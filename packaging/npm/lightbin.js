@@ -761,11 +761,7 @@ function dump_text(core, {struct, options, members, arrays}, view, lights, input
             const given = [binner, view[address], placed, others, ...struct === 'grid' ? [lists, 0] : [0, lists]];
             const size = c.stackAlloc(4);
             core.flush();
-            try {
-                core.check(c.lightbin_dump, ...given, 0, 0, size);
-            } catch (error) {
-                if (error.code !== 'buffer-too-small') throw error;
-            }
+            core.check(c.lightbin_dump, ...given, 0, 0, size);
             const bytes = core.heap().getUint32(size, true), text = to.reserve(bytes);
             core.check(c.lightbin_dump, ...given, text, bytes, size);
             return core.text(text);

@@ -428,7 +428,7 @@ static void test_masks(void) {
     NEEDS(lightbin_dump(binner, NULL, &lights, NULL, NULL, &masks, NULL, 0, &size), "view");
     NEEDS(lightbin_dump(binner, view, NULL, NULL, NULL, &masks, NULL, 0, &size), "lights");
     NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, NULL, NULL, 0, &size), "grid");
-    NEEDS(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, NULL, 9, &size), "text");
+    CHECK(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, NULL, 0, &size).error == LIGHTBIN_OK);
     CHECK(size > 300);
     CHECK(refuses(lightbin_dump(binner, view, &lights, NULL, NULL, &masks, text, sizeof text, NULL),
                   LIGHTBIN_BUFFER_TOO_SMALL, "text"));

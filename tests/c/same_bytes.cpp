@@ -242,8 +242,7 @@ lightbin_lights lights_of(std::size_t first_spot, std::size_t first_box, bool in
 std::string dumped(const lightbin_binner* binner, const lightbin_view* view, const lightbin_lights& lights,
                    const lightbin_inputs* inputs, const lightbin_grid* grid, const lightbin_masks* masks) {
     std::size_t size = 0;
-    CHECK(lightbin_dump(binner, view, &lights, inputs, grid, masks, nullptr, 0, &size).error ==
-          LIGHTBIN_BUFFER_TOO_SMALL);
+    works(lightbin_dump(binner, view, &lights, inputs, grid, masks, nullptr, 0, &size));
     std::string text(size, ' ');
     works(lightbin_dump(binner, view, &lights, inputs, grid, masks, text.data(), size, &size));
     CHECK(text.back() == 0);

@@ -127,7 +127,7 @@ void write_dump(const lightbin_binner* binner, const lightbin_view* view, const 
     const auto dump = [&](char* text) {
         return lightbin_dump(binner, view, &lights, &inputs, grid, masks, text, size, &size);
     };
-    if (dump(nullptr).error != LIGHTBIN_BUFFER_TOO_SMALL) std::exit(EXIT_FAILURE);
+    succeed(dump(nullptr));
     std::vector<char> text(size);
     succeed(dump(text.data()));
     write_block(text.data(), size - 1);

@@ -26,7 +26,8 @@ lightbin_result lightbin_dump(const lightbin_binner* binner, const lightbin_view
         const lightbin::Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
         const auto write = [&](const std::string& made) {
             if (size != nullptr) *size = made.size() + 1;
-            return write_items(made.c_str(), made.size() + 1, text, capacity, "text");
+            return text == nullptr ? succeeded()
+                                   : write_items(made.c_str(), made.size() + 1, text, capacity, "text");
         };
         if (masks != nullptr)
             return write(lightbin::detail::dump(
