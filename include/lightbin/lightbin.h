@@ -566,24 +566,26 @@ typedef struct lightbin_format {
     uint32_t capacity; /* for SENTINEL: the ids that a tile has memory for, 1 or more */
 } lightbin_format;
 
-/* What lightbin_encode() left out of lists that are longer than the capacity of a sentinel format. */
+/* What lightbin_encode() returns beside the lists: what it left out of those that are longer than the capacity of a
+ * sentinel format. */
 typedef struct lightbin_encoded {
     uint32_t size;
     uint32_t tiles_cut; /* the number of tiles whose list was cut */
     uint64_t entries_cut;
+    uint64_t bytes;           /* that the lists take */
     uint32_t capacity_needed; /* the length of the longest list: the least capacity that cuts none */
     uint32_t unused;
 } lightbin_encoded;
 
-/* Computes how many bytes lightbin_encode() needs for so many tiles and list entries. */
-LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* format, uint64_t tiles, uint64_t entries,
-                                                    uint64_t* bytes);
-
 /* Writes the lists of a grid in another format, in this machine's byte order; with OFFSET_COUNT the ids alone, which
  * grid->ranges still index. All offsets and ids must be inside of the arrays that they refer to, as in a grid that
  * lightbin_bin() filled in. Every list is complete, except that the sentinel format cuts lists that are longer than its
- * capacity and counts what it cut. Errors: LIGHTBIN_CAPACITY_UNKNOWN, of the format; LIGHTBIN_IDS_TOO_NARROW, an id is
- * too large for the format; LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
+ * capacity and counts what it cut.
+ *
+ * out  `out_bytes` bytes; null: only encoded->bytes is computed
+ *
+ * Errors: LIGHTBIN_CAPACITY_UNKNOWN, of the format; LIGHTBIN_IDS_TOO_NARROW, an id is too large for the format;
+ * LIGHTBIN_LIST_BUFFER_TOO_SMALL. */
 LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format, void* out,
                                              uint64_t out_bytes, lightbin_encoded* encoded);
 

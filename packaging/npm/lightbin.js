@@ -601,13 +601,12 @@ class Lists extends Made {
     get ranges() { return this[array]('ranges'); }
     get order() { return this[array]('order'); }
     encode(format) {
-        const core = this.#core, {size, ...members} = this[raw], {rangeCount, idCount} = members;
+        const core = this.#core, {size, ...members} = this[raw];
         return core.scope(c => {
             const from = core.place('format', format, 'format'), grid = core.place('grid', members, 'grid');
-            const bytes_at = c.stackAlloc(8);
-            core.check(c.lightbin_encoded_bytes, from, BigInt(rangeCount), BigInt(idCount), bytes_at);
-            const bytes = Number(core.heap().getBigUint64(bytes_at, true));
-            const to = this.#encoded.reserve(bytes), encoded = core.place('encoded');
+            const encoded = core.place('encoded');
+            core.check(c.lightbin_encode, grid, from, 0, 0n, encoded);
+            const {bytes} = core.read('encoded', encoded), to = this.#encoded.reserve(bytes);
             core.check(c.lightbin_encode, grid, from, to, BigInt(bytes), encoded);
             const {tilesCut, entriesCut, capacityNeeded} = core.read('encoded', encoded);
             return {data: new Uint8Array(c.memory.buffer, to, bytes), tilesCut, entriesCut, capacityNeeded};

@@ -352,19 +352,20 @@ static void test_binners(void) {
     {
         lightbin_format format;
         lightbin_encoded encoded;
-        uint64_t bytes = 0;
+        char out[9];
         memset(&format, 0, sizeof format);
         CLEAR(encoded);
-        CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_WRONG_SIZE, "format"));
+        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 0, &encoded), LIGHTBIN_WRONG_SIZE, "format"));
         format.size = sizeof format;
         format.ids = 3;
-        CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_NOT_A_VALUE, "format"));
+        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 0, &encoded), LIGHTBIN_NOT_A_VALUE, "format"));
         format.ids = LIGHTBIN_U8;
         format.encoding = LIGHTBIN_SENTINEL;
         CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_CAPACITY_UNKNOWN);
         format.capacity = 4;
-        CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_LIST_BUFFER_TOO_SMALL);
-        NEEDS(lightbin_encode(&grid, &format, NULL, 9, &encoded), "out");
+        CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_OK);
+        CHECK(encoded.bytes == 4 * tile_count && encoded.capacity_needed == 0);
+        CHECK(lightbin_encode(&grid, &format, out, sizeof out, &encoded).error == LIGHTBIN_LIST_BUFFER_TOO_SMALL);
         grid.id_bytes = 3;
         CHECK(refuses(lightbin_encode(&grid, &format, NULL, 0, &encoded), LIGHTBIN_NOT_A_VALUE,
                       "grid.id_bytes"));

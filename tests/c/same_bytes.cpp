@@ -173,14 +173,12 @@ void compare(const LightMasks& expected, const lightbin_masks& masks) {
 /// Compares the lists of a grid in another format, made in C and in C++.
 template <class Id>
 void compare_encoded(const LightGrid<Id>& expected, const lightbin_grid& grid) {
-    const std::size_t cells = expected.ranges().size();
     const ListFormat cpp_format = {ListEncoding::sentinel, IdWidth::u16, 5};
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U16, 5};
-    std::uint64_t bytes = 0;
-    works(lightbin_encoded_bytes(&format, grid.range_count, grid.id_count, &bytes));
-    CHECK(bytes == encoded_bytes(cpp_format, cells, expected.ids().size()));
-    std::vector<std::byte> out(bytes), cpp_out(bytes);
     auto encoded = sized<lightbin_encoded>();
+    works(lightbin_encode(&grid, &format, nullptr, 0, &encoded));
+    CHECK(encoded.bytes == encoded_bytes(cpp_format, expected.ranges().size(), expected.ids().size()));
+    std::vector<std::byte> out(encoded.bytes), cpp_out(encoded.bytes);
     works(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
     const Encoded cpp_encoded = *encode(expected, cpp_format, cpp_out);
     CHECK(out == cpp_out);

@@ -103,11 +103,10 @@ lightbin_lights lights_of(const double* camera) {
 
 /// What is made of a grid.
 void write_uses(const lightbin_grid& grid) {
-    std::uint64_t bytes = 0;
     const lightbin_format format = {sizeof format, LIGHTBIN_SENTINEL, LIGHTBIN_U32, 1};  // no element is left as it was
-    succeed(lightbin_encoded_bytes(&format, grid.range_count, grid.id_count, &bytes));
-    std::vector<char> out(bytes);
     auto encoded = sized<lightbin_encoded>();
+    succeed(lightbin_encode(&grid, &format, nullptr, 0, &encoded));
+    std::vector<char> out(encoded.bytes);
     succeed(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded));
     write_block(out.data(), out.size());
     write_numbers({encoded.tiles_cut, static_cast<std::uint32_t>(encoded.entries_cut), encoded.capacity_needed});

@@ -51,28 +51,20 @@ inline lightbin_result read_member(const lightbin_format* given, ListFormat& kno
 
 extern "C" {
 
-lightbin_result lightbin_encoded_bytes(const lightbin_format* format, std::uint64_t tiles, std::uint64_t entries,
-                                       std::uint64_t* bytes) {
-    using namespace lightbin::c;
-    lightbin::ListFormat known;
-    const lightbin_result result =
-        first_error(check_pointers({{bytes, "bytes"}}), read_format(format, known, "format"));
-    if (result.error == LIGHTBIN_OK) *bytes = lightbin::encoded_bytes(known, tiles, entries);
-    return result;
-}
-
 lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format, void* out,
                                 std::uint64_t out_bytes, lightbin_encoded* encoded) {
     using namespace lightbin::c;
     lightbin::ListFormat known;
-    const lightbin_result checked = first_error(check_array(out, out_bytes, "out"), check_size(encoded, "encoded"),
-                                                read_format(format, known, "format"));
+    const lightbin_result checked =
+        first_error(check_size(encoded, "encoded"), read_format(format, known, "format"));
     return call_if(checked, [&] {
         return with_grid(grid, [&](const auto& from) {
+            const std::uint64_t bytes = lightbin::encoded_bytes(known, from.ranges().size(), from.ids().size());
+            if (out == nullptr && bytes > 0) return write({0, 0, 0, bytes, 0, 0}, encoded);
             const auto made = lightbin::encode(
                 from, known, std::span(static_cast<std::byte*>(out), static_cast<std::size_t>(out_bytes)));
             if (!made) return refused(made.error());
-            return write({0, made->tiles_cut, made->entries_cut, made->capacity_needed, 0}, encoded);
+            return write({0, made->tiles_cut, made->entries_cut, bytes, made->capacity_needed, 0}, encoded);
         });
     });
 }
