@@ -23,19 +23,21 @@ lightbin::CullPlan plan_of(const GpuFrame& frame, const lightbin::View& view,
         lightbin::plan_cull(view, options, room, slices ? &*slices : nullptr, to_view ? &*to_view : nullptr));
 }
 
-/// Returns the depths that the depth test reads: the interval of each tile, or with clusters of each slice. For the box
-/// test the tiles' edges follow.
+/// Returns the content of the buffer `z_bounds`: with clusters the slices' depths, the tiles' edges, and the bounds if
+/// there are any, otherwise the bounds and the edges.
 std::vector<lightbin::ShaderEdges> depths_of(const lightbin::View& view, const lightbin::Options& options,
                                              const lightbin::Slices* slices,
                                              const lightbin::ZBounds& bounds) {
     std::vector<lightbin::ShaderEdges> depths;
-    if (options.slicing == lightbin::Slicing::clusters)
-        depths = lightbin::shader_slabs(*slices);
-    else
-        for (std::size_t tile = 0; tile < bounds.min.size(); ++tile)
-            depths.push_back({bounds.min[tile], bounds.max[tile]});
     const std::vector<lightbin::ShaderEdges> edges = lightbin::shader_edges(view);
-    depths.insert(depths.end(), edges.begin(), edges.end());
+    const bool clusters = options.slicing == lightbin::Slicing::clusters;
+    if (clusters) {
+        depths = lightbin::shader_slabs(*slices);
+        depths.insert(depths.end(), edges.begin(), edges.end());
+    }
+    for (std::size_t tile = 0; tile < bounds.min.size(); ++tile)
+        depths.push_back({bounds.min[tile], bounds.max[tile]});
+    if (!clusters) depths.insert(depths.end(), edges.begin(), edges.end());
     return depths;
 }
 
@@ -71,6 +73,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, bool mas
     options_.world_space = first.to_view.has_value();
     options_.depth_test = options.depth_test;
     options_.slicing = options.slicing;
+    options_.bounded = !bounds.min.empty();
     plan_ = plan_of(first, view_, options_, room_, slices_);
     std::vector<ComputePass> passes;
     passes_ = masks ? std::span<const lightbin::CullPass>(lightbin::cull_mask_passes) : lightbin::cull_passes;
@@ -93,7 +96,7 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, bool mas
     make("lists", masks ? plan_.bytes.masks : plan_.bytes.lists);
     fill("lights", bytes_of(first.lights));
     fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
-    if (options.depth_test) fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
+    if (options.depth_test || options_.bounded) fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
 }
 
 double GpuBuild::upload(const GpuFrame& frame) {

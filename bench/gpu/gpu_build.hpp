@@ -30,7 +30,7 @@ ReadLists lists_of(const lightbin::LightMasks& masks);
 class GpuBuild {
 public:
     /// masks   whether it makes masks in place of lists
-    /// bounds  the depths that the options' depth test reads, or empty
+    /// bounds  the tiles' Z bounds, or empty: clusters read them, too
     GpuBuild(GpuDevice& device, const lightbin::Options& options, bool masks, int tile_size,
              const GpuFrame& first, std::uint32_t entries, const lightbin::Slices* slices,
              const lightbin::ZBounds& bounds);

@@ -52,27 +52,27 @@ private:
         // Where a single build takes seconds, one frame is enough.
         if (device_.is_software() && source.frames.front().lights.size() >= 100000) source.frames.resize(1);
         measure_tiles(source);
-        if (with_bounds) measure_one<Options{.depth_test = true}>(source, "box, 16 px", 16);
+        constexpr Options tested = {.depth_test = true, .slicing = Slicing::clusters};
+        if (with_bounds) measure_one<Options{.depth_test = true}>(source, "box, 16 px", 16, tiles_16_.bounds);
         measure_one<Options{.slicing = Slicing::clusters}>(source, "clusters, 64 px", 64);
-        measure_one<Options{.depth_test = true, .slicing = Slicing::clusters}>(source, "clusters+box, 64 px",
-                                                                               64);
+        measure_one<tested>(source, "clusters+box, 64 px", 64);
+        if (with_bounds) measure_one<tested>(source, "clusters+box, 64 px, Z bounds", 64, tiles_64_.bounds);
     }
 
     template <Options options, bool masks = false>
-    void measure_one(const LightSource& source, const std::string& method, int tile_size) {
+    void measure_one(const LightSource& source, const std::string& method, int tile_size,
+                     const lightbin::ZBounds& bounds = {}) {
         progress_(text("%s, %zu lights, %s", source.name.c_str(), source.frames.front().lights.size(),
                        method.c_str()));
-        const bool bounded = options.depth_test && options.slicing == Slicing::none;
         rows_.push_back(measure<options, masks>(device_, source, tile_size, turns_,
-                                                cluster_slices(source.reach),
-                                                bounded ? made_.bounds : lightbin::ZBounds{}));
+                                                cluster_slices(source.reach), bounds));
         rows_.back().method = method;
     }
 
     bool quick_;
     GpuDevice device_;
     TurnsOf turns_ = {};
-    MadeBounds made_{16};
+    MadeBounds tiles_16_{16}, tiles_64_{64};
     std::vector<GpuRow> rows_;
     Progress progress_;
 };

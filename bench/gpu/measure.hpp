@@ -61,8 +61,11 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     const auto cpu = [&](const GpuFrame& frame) {
         if constexpr (masks)
             return bin_frame(binner, frame, view);
-        else
-            return bin_frame(binner, frame, view, lightbin::inputs_for<options>(bounds, slices));
+        else {
+            auto inputs = lightbin::inputs_for<options>(bounds, slices);
+            if constexpr (clusters) inputs.bounds = bounds;
+            return bin_frame(binner, frame, view, inputs);
+        }
     };
     std::size_t longest = 0;
     for (const GpuFrame& frame : source.frames)
