@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace {
@@ -68,8 +69,12 @@ GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, bool mas
                    const GpuFrame& first, std::uint32_t entries, const lightbin::Slices* slices,
                    const lightbin::ZBounds& bounds)
     : device_(device),
-      view_(first.lens.view(tile_size)), room_{static_cast<std::uint32_t>(first.lights.size()), entries} {
-    if (slices) slices_ = *slices;
+      view_(first.lens.view(tile_size)), bounds_(bounds),
+      room_{static_cast<std::uint32_t>(first.lights.size()), entries} {
+    if (slices) {
+        slices_ = *slices;
+        slabs_ = lightbin::shader_slabs(*slices);
+    }
     options_.world_space = first.to_view.has_value();
     options_.depth_test = options.depth_test;
     options_.slicing = options.slicing;
@@ -106,16 +111,31 @@ double GpuBuild::upload(const GpuFrame& frame) {
     return frame.to_view ? milliseconds : milliseconds + device_.write("lights", bytes_of(frame.lights));
 }
 
-double GpuBuild::tests_a_light() {
+bool GpuBuild::draws(std::uint32_t slice, std::uint32_t x, std::uint32_t y) const {
+    const lightbin::CullConstants& c = plan_.constants;
+    const lightbin::ShaderEdges slab = slabs_[slice];
+    for (std::uint32_t i = 0; i < 64 && !bounds_.min.empty(); ++i) {
+        const std::uint32_t column = x + i % 8, row = y + i / 8;
+        if (column >= c.tiles_x || row >= c.tiles_y) continue;
+        const float low = bounds_.min[row * c.tiles_x + column], high = bounds_.max[row * c.tiles_x + column];
+        if (low <= high && low - std::abs(low) * c.slice_margin <= slab.high &&
+            slab.low <= high + std::abs(high) * c.slice_margin)
+            return true;
+    }
+    return bounds_.min.empty();
+}
+
+GroupWork GpuBuild::work_of_groups() {
     const lightbin::CullConstants& c = plan_.constants;
     const auto scratch = device_.read("scratch", std::size_t(plan_.bytes.scratch / 4));
     const std::uint32_t blocks = c.blocks_x * c.blocks_y * (((c.slices - 1) >> c.slice_shift) + 1),
                         steps = (c.lights + 1023) / 1024;
     const std::uint32_t *const words = &scratch[c.masks], *const summaries = words + (c.lights + 63) / 64 * 2 * blocks;
     double tests = 0;
-    const auto add_group = [&](std::uint32_t block, std::uint32_t first, std::uint32_t end) {
+    GroupWork work;
+    const auto add_group = [&](bool drawn, std::uint32_t block, std::uint32_t first, std::uint32_t end) {
         int found = 0;
-        for (std::uint32_t step = first; step < end; ++step) {
+        for (std::uint32_t step = first; drawn && step < end; ++step) {
             int lights = 0;
             for (std::uint32_t word = 0; word < 32; ++word)
                 if (summaries[step * blocks + block] >> word & 1) {
@@ -125,15 +145,21 @@ double GpuBuild::tests_a_light() {
             tests += lights + 8 * lights + 64 * ((lights + 31) / 32);
         }
         tests += found + (found > 0 ? 2 : 1) * double(end - first);  // a group with lights reads its summaries twice
+        ++work.groups;
+        work.idle += found == 0;
     };
     for (std::uint32_t slice = 0; slice < c.slices; ++slice)
         for (std::uint32_t y = 0; y < c.tiles_y; y += 8)
-            for (std::uint32_t x = 0; x < c.tiles_x; x += 8)
+            for (std::uint32_t x = 0; x < c.tiles_x; x += 8) {
+                const bool drawn = draws(slice, x, y);
                 for (std::uint32_t first = 0; first < steps; first += c.steps)
-                    add_group(((slice >> c.slice_shift) * c.blocks_y + (y >> c.block_shift)) * c.blocks_x +
+                    add_group(drawn,
+                              ((slice >> c.slice_shift) * c.blocks_y + (y >> c.block_shift)) * c.blocks_x +
                                   (x >> c.block_shift),
                               first, std::min(first + c.steps, steps));
-    return 2 * tests / std::max(1u, scratch[2]);
+            }
+    work.tests_a_light = 2 * tests / std::max(1u, scratch[2]);
+    return work;
 }
 
 ReadLists GpuBuild::read() {

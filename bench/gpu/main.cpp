@@ -91,13 +91,14 @@ std::string passes_of(const GpuRow& row) {
 void print_rows(const std::vector<GpuRow>& rows) {
     std::vector<TableRow> table = {
         {"lights", "", "method", "CPU ms", "its upload", "GPU ms", "its upload", "bytes a light", "tests a light",
-         "more"}};
+         "idle groups", "more"}};
     for (const GpuRow& row : rows)
         table.push_back({row.source, text("%7zu", row.lights), row.method, text("%.3f", row.cpu_ms),
                          text("%.3f", row.cpu_upload_ms), text("%.3f", row.gpu_ms),
                          text("%.3f", row.gpu_upload_ms),
                          text("%.0f", double(row.scratch) / double(row.lights)),
-                         row.tests > 0 ? text("%.1f", row.tests) : "",
+                         row.work.groups > 0 ? text("%.1f", row.work.tests_a_light) : "",
+                         row.work.groups > 0 ? text("%zu of %zu", row.work.idle, row.work.groups) : "",
                          text("%.3f %%", excess_percent(row.difference))});
     print_table(table);
 }
@@ -105,13 +106,15 @@ void print_rows(const std::vector<GpuRow>& rows) {
 void write_csv(const std::vector<GpuRow>& rows) {
     std::FILE* const csv = open_report(
         "gpu.csv", "device,source,method,lights,in_view,cpu_ms,cpu_upload_ms,gpu_ms,gpu_upload_ms,"
-                   "scratch_bytes,tests_a_light,entries,missed,more,unordered,passes");
+                   "scratch_bytes,tests_a_light,groups,idle,entries,missed,more,unordered,passes");
     for (const GpuRow& row : rows)
-        std::fprintf(csv, "\"%s\",\"%s\",\"%s\",%zu,%zu,%.4f,%.4f,%.4f,%.4f,%zu,%.1f,%zu,%zu,%zu,%zu,%s\n",
+        std::fprintf(csv,
+                     "\"%s\",\"%s\",\"%s\",%zu,%zu,%.4f,%.4f,%.4f,%.4f,%zu,%.1f,%zu,%zu,%zu,%zu,%zu,%zu,%s\n",
                      row.device.c_str(), row.source.c_str(), row.method.c_str(), row.lights, row.in_view,
-                     row.cpu_ms, row.cpu_upload_ms, row.gpu_ms, row.gpu_upload_ms, row.scratch, row.tests,
-                     row.difference.entries, row.difference.missed, row.difference.more,
-                     row.difference.unordered, passes_of(row).c_str());
+                     row.cpu_ms, row.cpu_upload_ms, row.gpu_ms, row.gpu_upload_ms, row.scratch,
+                     row.work.tests_a_light, row.work.groups, row.work.idle, row.difference.entries,
+                     row.difference.missed, row.difference.more, row.difference.unordered,
+                     passes_of(row).c_str());
     std::fclose(csv);
 }
 

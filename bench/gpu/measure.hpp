@@ -28,7 +28,7 @@ struct GpuRow {
     double gpu_ms = 0, gpu_upload_ms = 0;
     std::vector<std::pair<std::string, double>> passes;  ///< median milliseconds of each pass
     std::size_t scratch = 0;                             ///< bytes
-    double tests = 0;                                    ///< GpuBuild::tests_a_light() of the last frame's lists
+    GroupWork work;                                      ///< for the last frame's lists
     Difference difference;
 };
 
@@ -100,7 +100,7 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
             row.difference += compare(lists, expected.ranges, expected.ids);
         } else {
             row.difference += compare(lists, made.ranges(), made.ids());
-            row.tests = gpu.tests_a_light();
+            row.work = gpu.work_of_groups();
         }
     }
 
