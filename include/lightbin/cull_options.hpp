@@ -113,7 +113,7 @@ struct CullConstants {
     // The image axes, in tiles, as in ImageAxis. The margins are those of the GPU's arithmetic.
     float scale_x, offset_x, margin_x, limit_x;
     float scale_y, offset_y, margin_y, limit_y;
-    float sign_x, sign_y, sign_z, slice_margin;
+    float sign_x, sign_y, sign_z, depth_margin;
     float near_depth, front, back, near_fast;  // the near plane; both planes, moved outward; Camera::min_float_depth
     // The transform to view space, as in FloatTransform.
     float origin[3], stretch;

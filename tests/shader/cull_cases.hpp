@@ -295,7 +295,8 @@ private:
         using namespace lightbin;
         if (!mine()) return;
         const View view = builder_view(0, 1920, 1080, 32, false);
-        const BuiltScene tiles{view, {}, *Slices::linear(1, 0, 1)},
+        const auto bounds = cull_z_bounds(view);
+        const BuiltScene tiles{view, {bounds[0], bounds[1]}, *Slices::linear(1, 0, 1)},
             clusters{view, {}, *Slices::exponential(24, 1, 100)};
         const auto lights = cull_lights(0, 3000, 1);
         std::vector<Spot> wide = cull_spots(lights);
@@ -306,9 +307,11 @@ private:
         }
         make_ordinary<CullWay{}>(device, "ordinary spheres", tiles, lights, 1000);
         make_ordinary<CullWay{}>(device, "ordinary spots", tiles, cull_spots(lights), 50);
+        make_ordinary<CullWay{true}>(device, "ordinary spots, depth test", tiles, wide, 50);
         make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary spots, clusters, depth test",
                                                         clusters, wide, 50);
         make_ordinary<CullWay{}>(device, "ordinary boxes", tiles, cull_boxes(lights), 50);
+        make_ordinary<CullWay{true}>(device, "ordinary boxes, depth test", tiles, cull_boxes(lights), 50);
         make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary boxes, clusters, depth test", clusters,
                                                         cull_boxes(lights), 50);
     }
@@ -322,10 +325,8 @@ private:
         CullCase made = simple(scene.view, lights, 2 * expected.ids.size());
         made.options.slicing = way.slicing;
         made.options.depth_test = way.depth_test;
-        if (way.slicing != Slicing::none) {
-            made.slices = scene.slices;
-            made.z_bounds = cull_depths(scene, {}, true, Slicing::clusters);
-        }
+        if (way.slicing != Slicing::none) made.slices = scene.slices;
+        if (way.depth_test) made.z_bounds = cull_depths(scene, cull_z_bounds(scene.view), true, way.slicing);
         const CulledGrid grid = make(device, made);
         for (CullTally tally : {compare_lists(grid, expected), compare_masks(made, grid, lights)}) {
             tally.wrong += tally.excess * one_in > tally.entries;

@@ -143,7 +143,7 @@ void set_constants(const CullConstants& c, double margin) {
                 real(static_cast<float>(static_cast<double>(c.margin_x) * margin)), real(c.limit_x)};
     p_axis_y = {real(c.scale_y), real(c.offset_y),
                 real(static_cast<float>(static_cast<double>(c.margin_y) * margin)), real(c.limit_y)};
-    p_signs = {real(c.sign_x), real(c.sign_y), real(c.sign_z), real(c.slice_margin)};
+    p_signs = {real(c.sign_x), real(c.sign_y), real(c.sign_z), real(c.depth_margin)};
     p_planes = {real(c.near_depth), real(c.front), real(c.back), real(c.near_fast)};
     const auto column = [&](const auto& three, auto fourth) {
         return vec4{real(three[0]), real(three[1]), real(three[2]), real(fourth)};

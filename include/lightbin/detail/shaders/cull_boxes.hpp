@@ -142,21 +142,17 @@ vec4 $bounds_of_corners($box b, float least) {
 
 vec4 $bounds_of_box($box b) {
     float least = max(b.nearest, $planes.y);
-    vec4 bounds = vec4(-1e30, 1e30, -1e30, 1e30);
+    vec4 bounds = @everywhere;
     if (b.error <= least * 0.25) { bounds = $bounds_of_corners(b, least); }     @if !orthographic
     if (b.known) { bounds = $bounds_of_corners(b, least); }                     @if orthographic
-    if (b.ball.w >= 0.0) {
-        vec2 x = $bounds_of(b.ball.x, b.ball.z, b.ball.w);
-        vec2 y = $bounds_of(b.ball.y, b.ball.z, b.ball.w);
-        bounds = vec4(max(bounds.x, x.x), min(bounds.y, x.y), max(bounds.z, y.x), min(bounds.w, y.y));
-    }
+    if (b.ball.w >= 0.0) { bounds = $within_ball(bounds, b.ball); }
     return bounds;
 }
 )");
 }
 
 /// Adds `store_faces`, which writes the half spaces of a box's six faces, as store_box_planes() of kinds/boxes.inl
-/// does, and without slices two for its depths. Each is a vec4 (n, most) of the points p with  n.p <= most.
+/// does. Each is a vec4 (n, most) of the points p with  n.p <= most.
 ///
 /// As `most` is the greatest n.p of the box, no light is missed, whatever n is. So that the Binner's lists are held,
 /// too, errors of n are allowed for. The half axes are divided by their size, as there, and n by the size of the
@@ -165,10 +161,11 @@ vec4 $bounds_of_box($box b) {
 /// 1024u is more where the transform stretches no length 20 times as much as another.
 inline void add_faces(ShaderWriter& writer) {
     writer.add(R"(
-float $most($box b, vec3 n) {
+void $store_face(uint at, $box b, vec3 n) {
     float across = abs(dot(n, b.x)) + abs(dot(n, b.y));
     float along = dot(n, b.z);
-    return dot(n, b.centre) + max(across + along, across * b.taper - along) + (b.error + b.size * 6.1035156e-5);
+    float reach = max(across + along, across * b.taper - along) + (b.error + b.size * 6.1035156e-5);
+    $store_vec4(at, vec4(n, dot(n, b.centre) + reach));
 }
 
 // Faces whose normals are too small, as those of line segments are, exclude nothing.
@@ -198,15 +195,13 @@ void $store_faces(uint at, $box b) {
             up = (n - tilt) * $quotient(1.0, products);
             down = (n * -1.0 - tilt) * $quotient(1.0, products);
         }
-        $store_half_space(at + 8u * i, up, $most(b, up));
-        $store_half_space(at + 8u * i + 4u, down, $most(b, down));
+        $store_face(at + 8u * i, b, up);
+        $store_face(at + 8u * i + 4u, b, down);
         n = x;
         x = y;
         y = z;
         z = n;
     }
-    $store_half_space(at + 24u, vec3(0.0, 0.0, 1.0), b.depths.y);                     @if !clusters
-    $store_half_space(at + 28u, vec3(0.0, 0.0, -1.0), -b.depths.x);                   @if !clusters
 }
 )");
 }

@@ -29,17 +29,22 @@ constexpr unsigned cull_threads(CullPass pass) {
     return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
 }
 
-/// Returns how many words the depth test reads of a light: four for its sphere, and four for each half space around a
-/// spot (4 half spaces) or a box (6, and without slices 2 more for its depths).
-inline std::uint32_t cull_half_spaces_end(CullKind kind, Slicing slicing) {
-    return kind == CullKind::sphere ? 4u : kind == CullKind::spot ? 20u : slicing == Slicing::none ? 36u : 28u;
+/// Returns where in a light's record its sphere begins: behind its rectangle, and behind its slices or, where tiles'
+/// cells are tested, the view depths of a spot or box.
+inline std::uint32_t cull_sphere_at(const CullOptions& options) {
+    if (options.slicing == Slicing::clusters) return 3;
+    return options.depth_test && options.kind != CullKind::sphere ? 4 : 2;
 }
 
-/// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
+/// Returns where behind the begin of a light's sphere its half spaces end, of four words each: four around a spot, and
+/// six around a box.
+inline std::uint32_t cull_half_spaces_end(CullKind kind) {
+    return kind == CullKind::sphere ? 4 : kind == CullKind::spot ? 20 : 28;
+}
+
+/// How many words of `scratch` a light takes. The sphere and the half spaces are for the depth test.
 inline std::uint32_t cull_record_words(const CullOptions& options) {
-    const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
-    if (!options.depth_test) return words;
-    return words + cull_half_spaces_end(options.kind, options.slicing);
+    return cull_sphere_at(options) + (options.depth_test ? cull_half_spaces_end(options.kind) : 0);
 }
 
 /// Declares the members of CullConstants, without those that lights in view space don't need, and sets the conditions
@@ -55,7 +60,7 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
                 {"count_in_buffer", options.count_in_buffer}, {"bounded", clusters && options.bounded}});
     writer.set("totals", std::to_string(sizeof(CullTotals) / 4) + "u");
     writer.set("record_words", std::to_string(cull_record_words(options)) + "u");
-    writer.set("tested", clusters ? "3u" : "2u");  // where in a record what the depth test reads begins
+    writer.set("sphere", std::to_string(cull_sphere_at(options)) + "u");
     // The numbers of layers of cells and, with 2^$blocks.w slices each, of mask blocks.
     writer.set("cell_layers", clusters ? "$grid.z" : "1u");
     writer.set("mask_layers", clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u");
@@ -76,19 +81,6 @@ inline void declare_cull_constants(ShaderWriter& writer, const CullOptions& opti
 inline void declare_scratch(ShaderWriter& writer, const CullOptions& options, bool atomic = false) {
     const char* const type = atomic && writer.dialect.webgpu ? "atomic<uint>" : "uint";
     writer.declare_storage("scratch", type, "", options.scratch, 4);
-}
-
-/// Adds the function `store_half_space`. It writes the points p with  n.p <= most  to four words of `scratch`, which
-/// the passes count and fill compare with cells.
-inline void add_store_half_space(ShaderWriter& writer) {
-    writer.add(R"(
-void $store_half_space(uint at, vec3 n, float most) {
-    $store_word(at, floatBitsToUint(n.x));
-    $store_word(at + 1u, floatBitsToUint(n.y));
-    $store_word(at + 2u, floatBitsToUint(n.z));
-    $store_word(at + 3u, floatBitsToUint(most));
-}
-)");
 }
 
 /// Adds `sum`, which adds two numbers and returns 2^32 - 1 if the sum overflows.

@@ -39,14 +39,16 @@ vec2 $depths_of(uint cell) {
 )");
 }
 
-/// Adds `meets_half_spaces`, which tells whether a cell has points of each half space  n.p <= most  around a light, by
-/// the formula of view/cell_planes.hpp. Where a radius is -1, see add_project(), there are none. The Binner's n differs
-/// from this one by less than 2^-14 in each coordinate, see add_half_spaces() and add_faces(): so 2^-14 of the cell's
-/// coordinates is subtracted, and the Binner lists no light that this test excludes.
+/// Adds `meets_half_spaces`, which tells whether a tile's cell has depths of a light, and whether a cell has points of
+/// each half space  n.p <= most  around it, by the formula of view/cell_planes.hpp. Where a radius is -1, see
+/// add_project(), there are none. The Binner's n differs from this one by less than 2^-14 in each coordinate, see
+/// add_half_spaces() and add_faces(): so 2^-14 of the cell's coordinates is subtracted, and the Binner lists no light
+/// that this test excludes.
 inline void add_half_space_test(ShaderWriter& writer) {
     writer.add(R"(
 bool $meets_half_spaces(uint at, uint end, vec2 columns, vec2 rows, vec2 z) {
-    bool met = true;
+    bool met = true;                                                                                    @if clusters
+    bool met = uintBitsToFloat($scratch[at - 2u]) <= z.y && z.x <= uintBitsToFloat($scratch[at - 1u]);  @if !clusters
     vec2 across = clamp(columns, vec2(-1e18, -1e18), vec2(1e18, 1e18));
     vec2 down = clamp(rows, vec2(-1e18, -1e18), vec2(1e18, 1e18));
     uint last = end;
@@ -248,8 +250,8 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
         add_saturated_sum(writer);
         add_store_id(writer);
     }
-    writer.set("half_spaces_end", std::to_string(cull_half_spaces_end(options.kind, options.slicing)) + "u");
-    writer.set("tested_record", "@totals + id * @record_words + @tested");
+    writer.set("half_spaces_end", std::to_string(cull_half_spaces_end(options.kind)) + "u");
+    writer.set("tested_sphere", "@totals + id * @record_words + @sphere");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
     // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as slices_of() widens
     // lights, so that no cell of the Binner's is left out. A group of which no cell is drawn, or whose mask block has
@@ -326,12 +328,12 @@ void $run(uvec2 group, uint thread) {
             while (met != 0u) {                                             @if each_light
                 uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);              @if each_light
                 met &= met - 1u;                                            @if each_light
-                if (!$meets_box(@tested_record, columns, rows, z)) { continue; }        @if depth_test
+                if (!$meets_box(@tested_sphere, columns, rows, z)) { continue; }        @if depth_test
                 uint end = @half_spaces_end;                                            @if depth_test shapes !mixed
                 uint end = 4u;                                                          @if depth_test mixed
                 if (id >= $kinds.x) { end = 20u; }                                      @if depth_test mixed
                 if (id >= $kinds.y) { end = @half_spaces_end; }                         @if depth_test mixed
-                if (!$meets_half_spaces(@tested_record, end, x_sides, y_sides, z)) { continue; }   @if depth_test shapes
+                if (!$meets_half_spaces(@tested_sphere, end, x_sides, y_sides, z)) { continue; }   @if depth_test shapes
                 count += 1u;                                                @if each_light !fill
                 $store_id(at, id);                                          @if fill
                 at = $sum(at, 1u);                                          @if fill

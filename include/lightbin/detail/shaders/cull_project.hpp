@@ -179,8 +179,9 @@ vec2 $clipped(float c, float z, float r, float n) {
 )");
 }
 
-/// Adds `bounds_of` a sphere along an image axis, and `span`, the first and last tile of bounds, where -1e30 and 1e30
-/// are infinite; first > last if there is none.
+/// Adds `bounds_of` a sphere along an image axis, `within_ball`, which narrows bounds along x and then along y to those
+/// of a sphere, and `span`, the first and last tile of bounds, where -1e30 and 1e30 are infinite; first > last if there
+/// is none.
 ///
 /// An edge at x = p + offset tiles in the viewport, where p = scale slope, has a |p| of at most F, the greater one of
 /// |offset| and |tiles - offset|. The GPU's slope is off by 28u of itself, the rounded scale by u and the product by
@@ -203,6 +204,12 @@ vec2 $bounds_of(float c, float z, float r) {
 }
 )");
     writer.add(R"(
+vec4 $within_ball(vec4 bounds, vec4 ball) {
+    vec2 x = $bounds_of(ball.x, ball.z, ball.w);
+    vec2 y = $bounds_of(ball.y, ball.z, ball.w);
+    return vec4(max(bounds.x, x.x), min(bounds.y, x.y), max(bounds.z, y.x), min(bounds.w, y.y));
+}
+
 uvec2 $span(vec4 axis, uint tiles, vec2 bounds) {
     float low = bounds.x * axis.x + axis.y - axis.z;
     float high = bounds.y * axis.x + axis.y + axis.z;
@@ -216,8 +223,8 @@ uvec2 $span(vec4 axis, uint tiles, vec2 bounds) {
 )");
 }
 
-/// Adds `slices_of`, which returns the first and the last slice that an interval of view depths meets. It is widened by
-/// how far it may differ from the Binner's. Boundaries are integers that ascend with the depths, see shader_slices().
+/// Adds `slices_of`, which returns the first and the last slice that an interval of view depths meets. Boundaries are
+/// integers that ascend with the depths, see shader_slices().
 inline void add_slices(ShaderWriter& writer) {
     writer.add(R"(
 uint $key_of(float depth) {
@@ -239,15 +246,27 @@ uint $slices_before(uint key) {
 }
 
 uvec2 $slices_of(vec2 z) {
-    return uvec2($slices_before($key_of(z.x - abs(z.x) * $signs.w - 1e-37)),
-                 $slices_before($key_of(z.y + abs(z.y) * $signs.w + 1e-37) + 1u));
+    return uvec2($slices_before($key_of(z.x)), $slices_before($key_of(z.y) + 1u));
+}
+)");
+}
+
+/// Adds `store_vec4`, which writes a sphere or a half space, the points p with  n.p <= most,  to four words of
+/// `scratch`, which the passes count and fill compare with cells.
+inline void add_store_vec4(ShaderWriter& writer) {
+    writer.add(R"(
+void $store_vec4(uint at, vec4 v) {
+    $store_word(at, floatBitsToUint(v.x));
+    $store_word(at + 1u, floatBitsToUint(v.y));
+    $store_word(at + 2u, floatBitsToUint(v.z));
+    $store_word(at + 3u, floatBitsToUint(v.w));
 }
 )");
 }
 
 /// Adds the pass project.
 inline void add_project(ShaderWriter& writer, const CullOptions& options) {
-    const bool sliced = options.slicing != Slicing::none, mixed = options.kind == CullKind::mixed,
+    const bool sliced = options.slicing == Slicing::clusters, mixed = options.kind == CullKind::mixed,
                spots = options.kind == CullKind::spot || mixed, boxes = options.kind == CullKind::box || mixed;
     name_numbers(writer, options.lights_at);
     const auto count_at = [&](std::uint32_t kind) {
@@ -256,7 +275,8 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     writer.set("given", options.count_in_buffer ? count_at(0) : "$segments.x");
     writer.set("given_spots", count_at(1));
     writer.set("given_boxes", count_at(2));
-    writer.set({{"counts", mixed && options.count_in_buffer}});
+    writer.set("everywhere", "vec4(-1e30, 1e30, -1e30, 1e30)");
+    writer.set({{"counts", mixed && options.count_in_buffer}, {"depths", cull_sphere_at(options) > 2}});
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
     declare_scratch(writer, options, true);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
@@ -268,14 +288,15 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     add_sphere(writer);
     if (!options.orthographic || spots || (boxes && options.depth_test)) add_worst_operations(writer);
     add_span(writer, options);
-    if ((spots || boxes) && options.depth_test) add_store_half_space(writer);
+    if (options.depth_test) add_store_vec4(writer);
     if (spots) add_spots(writer, options);
     if (boxes) add_boxes(writer, options);
     if (sliced) add_slices(writer);
 
-    // With a depth test a light's record in `scratch` has its sphere, behind which `store_half_spaces` stores a spot's
-    // half spaces. A radius of -1 stands for a light that no cell's box excludes: one that counts as everywhere, or a
-    // spot for which `spot_at` found that the Binner may list more.
+    // With a depth test a light's record in `scratch` has its sphere, and behind it the half spaces around a spot or
+    // box. A radius of -1 stands for a light that no cell's box excludes: one that counts as everywhere, or a spot for
+    // which `spot_at` found that the Binner may list more. Depths are widened by how far they may differ from the
+    // Binner's.
     writer.add(R"(
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
@@ -291,9 +312,8 @@ uint $project(uint id, uint thread) {
     }
     bool bounded = state == 2u;                                             @if depth_test
     bool seen = state == 1u;
-    vec2 x = vec2(-1e30, 1e30);
-    vec2 y = x;
-    vec2 z = x;
+    vec4 bounds = @everywhere;
+    vec2 z = bounds.xy;
     if (at >= $kinds.w && (state == 1u || state == 2u)) {                   @if mixed
     if (state == 1u || state == 2u) {                                       @if !balls
         $box box = $box_at(at, s, state == 2u);                             @if boxes
@@ -302,31 +322,22 @@ uint $project(uint id, uint thread) {
         bounded = state == 2u;                                              @if boxes depth_test
         z = box.depths;                                                     @if boxes
         seen = z.x <= z.y && z.y >= $planes.y && z.x <= $planes.z;          @if boxes
-        if (seen) {                                                         @if boxes
-            $store_faces(record + @tested + 4u, box);                       @if boxes depth_test
-            vec4 bounds = $bounds_of_box(box);                              @if boxes
-            x = bounds.xy;                                                  @if boxes
-            y = bounds.zw;                                                  @if boxes
-        }                                                                   @if boxes
+        if (seen) { $store_faces(record + @sphere + 4u, box); }             @if boxes depth_test
+        if (seen) { bounds = $bounds_of_box(box); }                         @if boxes
     } else if (state == 2u) {                                               @if mixed
     if (state == 2u) {                                                      @if balls !mixed
-        z = vec2(s.z - s.w, s.z + s.w);                                     @if balls
+        z = vec2(s.z - s.w, s.z + s.w);                                     @if balls !spots
         $spot spot = $spot_at(at, s);                                       @if spots
         z = spot.depths;                                                    @if spots
         bounded = spot.sound;                                               @if spots depth_test !mixed
         bounded = spot.sound || at < $kinds.z;                              @if mixed depth_test
         seen = z.y >= $planes.y && z.x <= $planes.z;                        @if balls
-        if (seen) {                                                         @if balls
-            $store_half_spaces(record + @tested + 4u, spot);                @if spots depth_test
-            vec4 bounds = $bounds_of_spot(spot);                            @if spots
-            x = bounds.xy;                                                  @if spots
-            y = bounds.zw;                                                  @if spots
-            x = $bounds_of(s.x, s.z, s.w);                                  @if balls !spots
-            y = $bounds_of(s.y, s.z, s.w);                                  @if balls !spots
-        }                                                                   @if balls
+        if (seen) { $store_half_spaces(record + @sphere + 4u, spot); }      @if spots depth_test
+        if (seen) { bounds = $bounds_of_spot(spot); }                       @if spots
+        if (seen) { bounds = $within_ball(bounds, s); }                     @if balls !spots
     }
-    uvec2 columns = $span($axis_x, $grid.x, x);
-    uvec2 rows = $span($axis_y, $grid.y, y);
+    uvec2 columns = $span($axis_x, $grid.x, bounds.xy);
+    uvec2 rows = $span($axis_y, $grid.y, bounds.zw);
     seen = seen && columns.x <= columns.y && rows.x <= rows.y;
     if (!seen) {
         columns = uvec2(1u, 0u);
@@ -334,15 +345,15 @@ uint $project(uint id, uint thread) {
     }
     $store_word(record, columns.x | (rows.x << 16u));
     $store_word(record + 1u, columns.y | (rows.y << 16u));
+    z = vec2(z.x - abs(z.x) * $signs.w - 1e-37, z.y + abs(z.y) * $signs.w + 1e-37);                     @if depths
+    $store_word(record + 2u, floatBitsToUint(z.x));                         @if depths !clusters
+    $store_word(record + 3u, floatBitsToUint(z.y));                         @if depths !clusters
     uvec2 layers = uvec2(0u, 0u);                                           @if !clusters
     uvec2 layers = $slices_of(z);                                           @if clusters
     if (state == 1u) { layers = uvec2(0u, $slices[3]); }                    @if clusters
     $store_word(record + 2u, layers.x | (layers.y << 16u));                 @if clusters
     if (!bounded) { s.w = -1.0; }                                           @if depth_test
-    $store_word(record + @tested + 0u, floatBitsToUint(s.x));               @if depth_test
-    $store_word(record + @tested + 1u, floatBitsToUint(s.y));               @if depth_test
-    $store_word(record + @tested + 2u, floatBitsToUint(s.z));               @if depth_test
-    $store_word(record + @tested + 3u, floatBitsToUint(s.w));               @if depth_test
+    $store_vec4(record + @sphere, s);                                       @if depth_test
     if (seen) { $mark(thread, columns, rows, layers); }
     uint result = 0u;
     if (seen) { result = 0x10000u; }

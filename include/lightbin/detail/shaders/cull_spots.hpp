@@ -109,7 +109,7 @@ void $store_half_spaces(uint at, $spot s) {
         if ((i & 1u) != 0u) { n = n * -1.0; }
         n = n * across - s.axis * along;
         float most = slack + n.x * s.ball.x + n.y * s.ball.y + n.z * s.ball.z;
-        $store_half_space(at + 4u * i, n, most);
+        $store_vec4(at + 4u * i, vec4(n, most));
     }
 }
 )");
@@ -178,22 +178,18 @@ vec4 $bounds_of_spot($spot s) {
     add_narrowed(writer);
     writer.add(R"(
 vec4 $bounds_of_spot($spot s) {
-    vec2 x = $bounds_of(s.ball.x, s.ball.z, s.ball.w);
-    vec2 y = $bounds_of(s.ball.y, s.ball.z, s.ball.w);
+    vec4 bounds = $within_ball(@everywhere, s.ball);
     float nearest = s.ball.z - s.ball.w;
     if (nearest * 0.9999 > $planes.w && s.size * 3.0517578e-5 < s.depths.x) {
         if (s.tolerance > 0.0) {
-            x = $narrowed(s, x, s.ball.x, s.axis.x, s.axis.y);
-            y = $narrowed(s, y, s.ball.y, s.axis.y, s.axis.x);
+            bounds = vec4($narrowed(s, bounds.xy, s.ball.x, s.axis.x, s.axis.y),
+                          $narrowed(s, bounds.zw, s.ball.y, s.axis.y, s.axis.x));
         }
     } else if (nearest + s.size * 2.4414063e-4 < $planes.w && s.least.w < s.ball.w &&
                s.least.z + s.least.w > $planes.x) {
-        vec2 least_x = $bounds_of(s.least.x, s.least.z, s.least.w);
-        vec2 least_y = $bounds_of(s.least.y, s.least.z, s.least.w);
-        x = vec2(max(x.x, least_x.x), min(x.y, least_x.y));
-        y = vec2(max(y.x, least_y.x), min(y.y, least_y.y));
+        bounds = $within_ball(bounds, s.least);
     }
-    return vec4(x, y);
+    return bounds;
 }
 )");
 }
