@@ -290,7 +290,8 @@ private:
         }
     }
 
-    /// Limits how many entries ordinary lights have beyond the Binner's: 1 in 1,000 of spheres, 1 in 50 of the others.
+    /// Limits how many entries ordinary lights have beyond the Binner's: 1 in 1,000 of spheres, 1 in 400 of spots in
+    /// tiles with Z bounds, 1 in 50 of the others.
     template <class Device> void ordinary(Device& device) {
         using namespace lightbin;
         if (!mine()) return;
@@ -307,7 +308,7 @@ private:
         }
         make_ordinary<CullWay{}>(device, "ordinary spheres", tiles, lights, 1000);
         make_ordinary<CullWay{}>(device, "ordinary spots", tiles, cull_spots(lights), 50);
-        make_ordinary<CullWay{true}>(device, "ordinary spots, depth test", tiles, wide, 50);
+        make_ordinary<CullWay{true}>(device, "ordinary spots, depth test", tiles, wide, 400);
         make_ordinary<CullWay{true, Slicing::clusters}>(device, "ordinary spots, clusters, depth test",
                                                         clusters, wide, 50);
         make_ordinary<CullWay{}>(device, "ordinary boxes", tiles, cull_boxes(lights), 50);

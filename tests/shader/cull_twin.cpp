@@ -195,7 +195,8 @@ public:
     }
 
     /// Returns a box in or around the sphere of next(): any parallelepiped, at right angles, thin, flat, a line
-    /// segment, or a frustum; whole or cut by a ball around it, around one of its corners, or touching them.
+    /// segment, a frustum, or a beam from about the near plane; whole or cut by a ball around it, around one of
+    /// its corners, or touching them.
     Box next_box() {
         const Sphere s = next();
         const double size = static_cast<double>(s.radius);
@@ -218,6 +219,7 @@ public:
             for (unsigned k = 0; k < 3; ++k)
                 box.half_axes[i][k] = static_cast<float>(axes[i][k] * scale);
         }
+        if (!camera_.orthographic && engine_() % 4 == 0) make_beam(box);
         if (engine_() % 4 == 0) box.taper = engine_() % 2 == 0 ? 0.0f : static_cast<float>(real(0, 1));
         if (ball < 3) {
             box.radius = std::numeric_limits<float>::infinity();
@@ -232,6 +234,29 @@ public:
     }
 
 private:
+    /// Makes a box a thin beam in view, from about the near plane to far away. There, errors that grow with its size are
+    /// largest in the picture.
+    void make_beam(Box& box) {
+        double depth = static_cast<double>(camera_.near_depth) * std::pow(2.0, real(-1, 4));
+        const double width = depth / static_cast<double>(box.radius);
+        const auto next_end = [&](double farther, float(&end)[3]) {
+            depth *= farther;
+            for (float& number : end)
+                number = static_cast<float>(depth * real(-1, 1));
+            end[2] = camera_.z_sign * static_cast<float>(depth);
+        };
+        float first[3], last[3];
+        next_end(1, first);
+        next_end(std::pow(2.0, real(4, 11)), last);
+        float* const middle[] = {&box.box_x, &box.box_y, &box.box_z};
+        for (unsigned k = 0; k < 3; ++k) {
+            *middle[k] = (first[k] + last[k]) / 2;
+            box.half_axes[0][k] = (last[k] - first[k]) / 2;
+            for (unsigned i = 1; i < 3; ++i)
+                box.half_axes[i][k] *= static_cast<float>(width);
+        }
+    }
+
     double real(double low, double high) {
         return low + (high - low) * static_cast<double>(engine_() >> 8) / 16777216.0;
     }

@@ -152,7 +152,7 @@ vec4 $bounds_of_box($box b) {
 }
 
 /// Adds `store_faces`, which writes the half spaces of a box's six faces, as store_box_planes() of kinds/boxes.inl
-/// does. Each is a vec4 (n, most) of the points p with  n.p <= most.
+/// does.
 ///
 /// As `most` is the greatest n.p of the box, no light is missed, whatever n is. So that the Binner's lists are held,
 /// too, errors of n are allowed for. The half axes are divided by their size, as there, and n by the size of the

@@ -87,8 +87,7 @@ vec2 $across(vec2 sides, vec2 z) {
     float high = max(sides.y * z.x, sides.y * z.y);                                                 @if !orthographic
     return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);    @if !orthographic
 }
-)");
-    writer.add(R"(
+
 float $apart(float at, vec2 ends) {
     return max(max(ends.x - at, at - ends.y), 0.0);
 }

@@ -202,8 +202,7 @@ vec2 $bounds_of(float c, float z, float r) {
     else { bounds = $clipped(c, z, r, $planes.x); }                     @if !orthographic
     return bounds;                                                      @if !orthographic
 }
-)");
-    writer.add(R"(
+
 vec4 $within_ball(vec4 bounds, vec4 ball) {
     vec2 x = $bounds_of(ball.x, ball.z, ball.w);
     vec2 y = $bounds_of(ball.y, ball.z, ball.w);
@@ -251,8 +250,8 @@ uvec2 $slices_of(vec2 z) {
 )");
 }
 
-/// Adds `store_vec4`, which writes a sphere or a half space, the points p with  n.p <= most,  to four words of
-/// `scratch`, which the passes count and fill compare with cells.
+/// Adds `store_vec4`, which writes four words of `scratch`: a sphere, or the vec4 (n, most) of a half space, the points
+/// p with  n.p <= most.  The passes count and fill compare these with cells.
 inline void add_store_vec4(ShaderWriter& writer) {
     writer.add(R"(
 void $store_vec4(uint at, vec4 v) {
