@@ -100,8 +100,12 @@ private:
                     one<way>(device, cull_spots(spheres), camera, tile_size);
                     one<way>(device, cull_boxes(spheres), camera, tile_size);
                     if constexpr (way.world_space || (way.depth_test && way.slicing == lightbin::Slicing::none)) {
-                        const std::vector<lightbin::Sphere> some(spheres.begin(), spheres.begin() + 250);
-                        one<way>(device, MixedLights{some, cull_spots(some), cull_boxes(some)}, camera, tile_size);
+                        // More of each kind than of the one before it: so kinds with each other's counts lack lights.
+                        const auto some = [&](int count) {
+                            return std::vector<lightbin::Sphere>(spheres.begin(), spheres.begin() + count);
+                        };
+                        one<way>(device, MixedLights{some(200), cull_spots(some(250)), cull_boxes(some(300))}, camera,
+                                 tile_size);
                     }
                 }
     }
