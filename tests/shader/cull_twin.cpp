@@ -234,8 +234,8 @@ public:
     }
 
 private:
-    /// Makes a box a thin beam in view, from about the near plane to far away. There, errors that grow with its size are
-    /// largest in the picture.
+    /// Makes a box a thin beam in view, from about the near plane to far away. In the picture, errors that grow with a
+    /// box's size are largest there.
     void make_beam(Box& box) {
         double depth = static_cast<double>(camera_.near_depth) * std::pow(2.0, real(-1, 4));
         const double width = depth / static_cast<double>(box.radius);

@@ -165,7 +165,7 @@ void $store_face(uint at, $box b, vec3 n) {
     float across = abs(dot(n, b.x)) + abs(dot(n, b.y));
     float along = dot(n, b.z);
     float reach = max(across + along, across * b.taper - along) + (b.error + b.size * 6.1035156e-5);
-    $store_vec4(at, vec4(n, dot(n, b.centre) + reach));
+    $store_four(at, vec4(n, dot(n, b.centre) + reach));
 }
 
 // Faces whose normals are too small, as those of line segments are, exclude nothing.

@@ -250,11 +250,11 @@ uvec2 $slices_of(vec2 z) {
 )");
 }
 
-/// Adds `store_vec4`, which writes four words of `scratch`: a sphere, or the vec4 (n, most) of a half space, the points
+/// Adds `store_four`, which writes four words of `scratch`: a sphere, or the vec4 (n, most) of a half space, the points
 /// p with  n.p <= most.  The passes count and fill compare these with cells.
-inline void add_store_vec4(ShaderWriter& writer) {
+inline void add_store_four(ShaderWriter& writer) {
     writer.add(R"(
-void $store_vec4(uint at, vec4 v) {
+void $store_four(uint at, vec4 v) {
     $store_word(at, floatBitsToUint(v.x));
     $store_word(at + 1u, floatBitsToUint(v.y));
     $store_word(at + 2u, floatBitsToUint(v.z));
@@ -287,7 +287,7 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
     add_sphere(writer);
     if (!options.orthographic || spots || (boxes && options.depth_test)) add_worst_operations(writer);
     add_span(writer, options);
-    if (options.depth_test) add_store_vec4(writer);
+    if (options.depth_test) add_store_four(writer);
     if (spots) add_spots(writer, options);
     if (boxes) add_boxes(writer, options);
     if (sliced) add_slices(writer);
@@ -352,7 +352,7 @@ uint $project(uint id, uint thread) {
     if (state == 1u) { layers = uvec2(0u, $slices[3]); }                    @if clusters
     $store_word(record + 2u, layers.x | (layers.y << 16u));                 @if clusters
     if (!bounded) { s.w = -1.0; }                                           @if depth_test
-    $store_vec4(record + @sphere, s);                                       @if depth_test
+    $store_four(record + @sphere, s);                                       @if depth_test
     if (seen) { $mark(thread, columns, rows, layers); }
     uint result = 0u;
     if (seen) { result = 0x10000u; }

@@ -109,7 +109,7 @@ void $store_half_spaces(uint at, $spot s) {
         if ((i & 1u) != 0u) { n = n * -1.0; }
         n = n * across - s.axis * along;
         float most = slack + n.x * s.ball.x + n.y * s.ball.y + n.z * s.ball.z;
-        $store_vec4(at + 4u * i, vec4(n, most));
+        $store_four(at + 4u * i, vec4(n, most));
     }
 }
 )");
