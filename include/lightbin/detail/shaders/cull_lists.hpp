@@ -252,9 +252,9 @@ inline void add_lists(ShaderWriter& writer, const CullOptions& options, bool fil
     writer.set("half_spaces_end", std::to_string(cull_half_spaces_end(options.kind)) + "u");
     writer.set("tested_sphere", "@totals + id * @record_words + @sphere");
     writer.set({{"fill", fill}, {"each_light", fill || options.depth_test}});
-    // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as slices_of() widens
-    // lights, so that no cell of the Binner's is left out. A group of which no cell is drawn, or whose mask block has
-    // none of the segment's lights, skips all lights.
+    // The tiles' Z bounds lie behind the slices' depths and the edges of tiles. They are widened as add_project() does
+    // lights' depths, so that no cell of the Binner's is left out. A group of which no cell is drawn, or whose mask
+    // block has none of the segment's lights, skips all lights.
     writer.set("tile_bounds", "$depths_of($grid.z + $grid.x + $grid.y + tile.y * $grid.x + tile.x)");
     // Lights that are tested end before the depth 2^42.
     writer.set("least_depth", options.orthographic ? "-4.3980465e12" : "$planes.x");

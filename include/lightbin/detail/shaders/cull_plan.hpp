@@ -133,8 +133,7 @@ inline Result<CullPlan> plan_cull(const View& view, const CullOptions& options, 
     }
     plan_blocks(to);
     plan_camera(camera_of(view), to);
-    // Lights' depths are widened by the margin of the slices and by 5u, how far the GPU's depths and the Binner's may
-    // differ.
+    // Lights' depths are widened by the margin of the slices, and by how far they may differ from the Binner's.
     to.depth_margin = float_above((clusters ? static_cast<double>(table_of(*slices).margin) : 0) + 0x1p-20);
     if (to_view != nullptr) {
         const WorldToView transform(*to_view);

@@ -294,8 +294,11 @@ inline void add_project(ShaderWriter& writer, const CullOptions& options) {
 
     // With a depth test a light's record in `scratch` has its sphere, and behind it the half spaces around a spot or
     // box. A radius of -1 stands for a light that no cell's box excludes: one that counts as everywhere, or a spot for
-    // which `spot_at` found that the Binner may list more. Depths are widened by how far they may differ from the
-    // Binner's.
+    // which `spot_at` found that the Binner may list more.
+    //
+    // A light's depths are compared with slices or, of spots and boxes, with tiles' Z bounds. They are widened, as they
+    // must hold the Binner's: the sums that they end with are off by 2u of themselves, and the Binner's by u. Errors
+    // before are in a spot's tolerance and a box's error. 2^-20 = 16u is more, see plan_cull().
     writer.add(R"(
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
