@@ -32,9 +32,9 @@ struct AdviceCosts {
     double overdraw = 1;
 };
 
-/// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
-/// View::with_tile_size() the tile size. A plan with masks is for a MaskBinner, which is given the slices if `slicing`
-/// is z_bins; the Binner of its options makes lists of the same lights.
+/// One way to light a view, and its costs per frame. `depth_test` and `slicing` are the Options of a Binner, and
+/// View::with_tile_size() applies the tile size. A plan with masks is for a MaskBinner, which is given the slices if
+/// `slicing` is z_bins.
 struct AdvicePlan {
     bool tiled = true;  ///< false: every pixel evaluates every light; `depth_test` to `tile_size` mean nothing
     bool depth_test = false;
@@ -108,25 +108,6 @@ private:
 /// Returns the advice for people to read: the cheapest plan, and a line for each technique with what it saves or costs.
 inline std::string to_string(const Advice& advice);
 
-/// Applies a plan of advise(): calls visit.operator()<options>() with the plan's options as a constant, and returns its
-/// result. Your program then contains one Binner for each of the options that advise() measures, and no others.
-///
-///     lightbin::with_options(plan, [&]<lightbin::Options options> {
-///         lightbin::Binner<options> binner;
-///         draw_frames(binner, *view.with_tile_size(plan.tile_size));  // a template of yours, which calls
-///     });                                        // binner.bin(view, lights, inputs_for<options>(bounds))
-///
-/// plan  if AdvicePlan::tiled is false, its options mean nothing
-/// base  the options that a plan leaves open: ids
-template <Options base = Options{}, class Visit>
-decltype(auto) with_options(const AdvicePlan& plan, Visit&& visit);
-
-/// Applies a plan of advise_slices(): calls visit.operator()<options>() with the plan's options as a constant, and
-/// returns its result. Only plans with clusters or z-bins need slices: inputs_for<options>({}, slices) returns for
-/// every plan the inputs that Binner::bin() needs.
-template <Options base = Options{}, class Visit>
-decltype(auto) with_sliced_options(const AdvicePlan& plan, Visit&& visit);
-
 /// Measures what each way to light a view costs: without tiles; and with tiles of the view's tile size, of 2, 4 and 8
 /// times that size, and of one tile as large as the screen, each by masks and by lists without and, if there are
 /// `bounds`, with the depth test. So pass the view with the smallest tiles that you would use. Errors: those of
@@ -140,9 +121,8 @@ decltype(auto) with_sliced_options(const AdvicePlan& plan, Visit&& visit);
 /// bounds  Z bounds of the view's own tiles, from which bounds of larger tiles are merged. Without bounds, the
 ///         depth test is not measured, and every pixel is assumed to have something to light: if a third of the pixels
 ///         is sky, multiply AdviceCosts::evaluation_ns by two thirds
-/// base    the options that a plan leaves open: ids
 /// Clock   a clock like those of <chrono>; one that counts this thread's own time is better on a busy machine
-template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
+template <class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCosts& costs = {},
                       const ZBounds& bounds = {});
 
@@ -163,12 +143,12 @@ struct WeighedSlices {
 /// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles, and tiles with
 /// z-bins, by lists and by masks; clusters without and with the depth test. The tile sizes are those of advise(). Each
 /// depth sample stands for an equal share of the pixels, which evaluate the list of their tile; with z-bins its part
-/// between the ranks of the depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan.
-/// Errors: those of Binner::bin(), and fewer depths than samples.size says.
+/// between the ranks of the depth's bin; with clusters the list of the cell. Errors: those of Binner::bin(), and
+/// fewer depths than samples.size says.
 ///
 /// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
 /// off. It takes longer than advise(), because clusters of the smallest tiles do.
-template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
+template <class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
                              const DepthSamples& samples, const AdviceCosts& costs = {});
 

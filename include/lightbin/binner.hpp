@@ -25,8 +25,7 @@ template <bool depth_test, Slicing slicing = Slicing::none> struct Inputs {
         detail::bounds_left_out<reads_bounds>();
 };
 
-/// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary, such as
-/// callables given to with_options() of advise.hpp.
+/// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary.
 template <Options options>
 requires(options.slicing == Slicing::none)
 Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {

@@ -121,13 +121,11 @@ void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& li
     hash.add(value_of(plan_cull(view, {}, {static_cast<std::uint32_t>(lights.size()), 9})).bytes.scratch);
 }
 
-/// Adds a number for each plan of the advice: of_plan(plan) returns it.
-void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
+void add_plans(Hash& hash, const Advice& advice) {
     double evaluations = 0;  // in any order: which plan is best depends on the machine
     for (const AdvicePlan& plan : advice.plans()) {
         evaluations += plan.evaluations;
         hash.value += plan.entries;
-        if (plan.tiled) hash.value += of_plan(plan);
     }
     hash.add(static_cast<std::uint64_t>(evaluations));
     hash.value += advice.text().empty();
@@ -135,19 +133,11 @@ void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
 }
 
 void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
-    add_plans(hash, value_of(advise(view, lights, {}, bounds)), [](const AdvicePlan& plan) {
-        return with_options(plan, []<Options options> { return sizeof(Binner<options>); });
-    });
+    add_plans(hash, value_of(advise(view, lights, {}, bounds)));
     const Slices slices = value_of(Slices::exponential(6, 2, 50)).with_margin(0x1p-14f);
     const std::array<float, 6> depths = {1, 3, 10, 20, 40, 80};
-    const auto advice = advise_slices(view, lights, {.clusters = slices, .z_bins = slices},
-                                      {.depths = depths, .size = {3, 2}});
-    add_plans(hash, value_of(advice), [&](const AdvicePlan& plan) {
-        return with_sliced_options(plan, [&]<Options options> {
-            Binner<options> binner;
-            return value_of(binner.bin(view, lights, inputs_for<options>({}, slices))).ids().size();
-        });
-    });
+    add_plans(hash, value_of(advise_slices(view, lights, {.clusters = slices, .z_bins = slices},
+                                           {.depths = depths, .size = {3, 2}})));
 }
 
 void use_view(Hash& hash, const View& view) {

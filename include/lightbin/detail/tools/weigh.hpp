@@ -82,34 +82,6 @@ inline std::string to_string(const Advice& advice) {
 
 namespace detail {
 
-/// The options that advise() measures.
-inline constexpr Options weighed[] = {{}, {.depth_test = true}};
-
-/// The options that advise_slices() measures.
-inline constexpr Options weighed_sliced[] = {{},
-                                             {.slicing = Slicing::z_bins},
-                                             {.slicing = Slicing::clusters},
-                                             {.depth_test = true, .slicing = Slicing::clusters}};
-
-/// Returns `base` with the depth test and slicing of `row`, a row of a table of options to be measured.
-constexpr Options weighed_options(Options base, const Options& row) {
-    base.depth_test = row.depth_test;
-    base.slicing = row.slicing;
-    return base;
-}
-
-/// Searches `table`, an array of Options, from row i on for a plan's depth test and slicing. Calls
-/// visit.operator()<options>() with `base` and these two, and returns its result.
-template <const auto& table, Options base, std::size_t i, class Visit>
-decltype(auto) with_options_from(const AdvicePlan& plan, Visit& visit) {
-    constexpr Options options = weighed_options(base, table[i]);
-    const bool found = plan.depth_test == options.depth_test && plan.slicing == options.slicing;
-    if constexpr (i + 1 < std::size(table))
-        if (!found) return with_options_from<table, base, i + 1>(plan, visit);
-    LIGHTBIN_ASSERT(found);
-    return visit.template operator()<options>();
-}
-
 /// The size of the image that tile columns and rows divide: with a turned projection, width and height are exchanged.
 inline ImageSize size_of_grid(const View& view) {
     return {camera_of(view).x.split.side, camera_of(view).y.split.side};
@@ -156,13 +128,14 @@ auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orth
     return lights(moved_aside(joined.first, aside, orthographic), moved_aside(joined.rest, aside, orthographic));
 }
 
-/// Measures the options in each row of a table on grids of several tile sizes.
+/// Measures each of the options `measured` on grids of several tile sizes.
 ///
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
 ///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
-template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
+template <class Clock, Options... measured, class LightRange, class ForEachVisible>
 LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
-                     const LightRange& lights, const AdviceCosts& costs, ForEachVisible for_each_visible) {
+                                    const LightRange& lights, const AdviceCosts& costs,
+                                    ForEachVisible for_each_visible) {
     if (view.tile_size() == 0) return Error{ErrorCode::tile_size_out_of_range};
     // The grids: tiles of the view's tile size, of 2, 4 and 8 times that size while that is smaller than the screen,
     // and one tile as large as the screen.
@@ -172,9 +145,8 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
          size = size > whole / 2 ? whole : 2 * size)
         grids.emplace_back(view, bounds, size);
     grids.emplace_back(view, bounds, whole);
-    auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::tuple<Binner<weighed_options(base, table[i])>...>();
-    }(std::make_index_sequence<std::size(table)>());
+    std::tuple<Binner<measured>...> binners;
+    const auto for_each_binner = [&](auto visit) { std::apply([&](auto&... each) { (visit(each), ...); }, binners); };
     MaskBinner mask_binner;
     // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
     // shortest so far. A plan's first call also counts how often pixels evaluate a light or look at a word of masks.
@@ -215,11 +187,9 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             });
             return std::nullopt;
         };
-        const auto build_lists = [&]<Options options>() -> std::optional<Error> {
-            const auto built = timed([&] {
-                return std::get<Binner<options>>(binners).bin(grid->view, moved,
-                                                              inputs_for<options>(grid->bounds, by));
-            });
+        const auto build_lists = [&]<Options options>(Binner<options>& binner) -> std::optional<Error> {
+            const auto built =
+                timed([&] { return binner.bin(grid->view, moved, inputs_for<options>(grid->bounds, by)); });
             if (!built) return built.error();
             if (!first) return std::nullopt;
             const LightRanks& ranks = built->ranks();
@@ -235,7 +205,14 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             });
             return std::nullopt;
         };
-        const auto error = plan.masks ? build_masks() : with_options_from<table, base, 0>(plan, build_lists);
+        std::optional<Error> error;
+        if (plan.masks)
+            error = build_masks();
+        else
+            for_each_binner([&]<Options options>(Binner<options>& binner) {
+                if (plan.depth_test == options.depth_test && plan.slicing == options.slicing)
+                    error = build_lists(binner);
+            });
         if (first && !plan.has_z_bounds()) {
             plan.words *= costs.overdraw;
             plan.evaluations *= costs.overdraw;
@@ -249,20 +226,21 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(light_count(source));
     });
     for (const WeighedGrid& grid : grids)
-        for (const Options& options : table) {
+        for_each_binner([&]<Options options>(const Binner<options>&) {
             const bool lacks_bounds = grid.bounds.min.empty() && grid.bounds.max.empty();
-            if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) continue;
-            for (const bool masks : {false, true}) {
-                if (masks && (options.depth_test || options.slicing == Slicing::clusters)) continue;
-                AdvicePlan plan = {.depth_test = options.depth_test,
-                                   .slicing = options.slicing,
-                                   .masks = masks,
-                                   .tile_size = grid.view.tile_size(),
-                                   .build_ns = HUGE_VAL};
-                if (const auto error = build(plan, lights, true)) return *error;
-                plans.push_back(plan);
-            }
-        }
+            if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) return;
+            AdvicePlan plan = {.depth_test = options.depth_test,
+                               .slicing = options.slicing,
+                               .tile_size = grid.view.tile_size(),
+                               .build_ns = HUGE_VAL};
+            plans.push_back(plan);
+            if (options.depth_test || options.slicing == Slicing::clusters) return;
+            plan.masks = true;
+            plans.push_back(plan);
+        });
+    for (AdvicePlan& plan : plans)
+        if (plan.tiled)
+            if (const auto error = build(plan, lights, true)) return *error;
 
     // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
     // above, took longer because they allocated memory. In each turn the lights are moved sideways, by up to 1/32 of
@@ -289,15 +267,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
 
 }  // namespace detail
 
-template <Options base, class Visit> decltype(auto) with_options(const AdvicePlan& plan, Visit&& visit) {
-    return detail::with_options_from<detail::weighed, base, 0>(plan, visit);
-}
-
-template <Options base, class Visit> decltype(auto) with_sliced_options(const AdvicePlan& plan, Visit&& visit) {
-    return detail::with_options_from<detail::weighed_sliced, base, 0>(plan, visit);
-}
-
-template <Options base, class Clock, class LightRange>
+template <class Clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCosts& costs, const ZBounds& bounds) {
     for (const std::span<const float> side : {bounds.min, bounds.max})
         if (!side.empty() && side.size() < view.tile_count())
@@ -306,7 +276,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCo
     const ImageSize window = detail::size_of_grid(view);
     const int size = view.tile_size();
     const Slices one = *Slices::from_boundaries({});  // read by no plan
-    return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
+    constexpr Options lists, tested = {.depth_test = true};
+    return detail::weigh<Clock, lists, tested>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
         detail::for_each_drawn(view, bounds, [&](int x, int y, float low, float) {
             x *= size;
             y *= size;
@@ -315,7 +286,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const AdviceCo
     });
 }
 
-template <Options base, class Clock, class LightRange>
+template <class Clock, class LightRange>
 Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
                              const DepthSamples& samples, const AdviceCosts& costs) {
     const ImageSize window = view.viewport(), grid = samples.size;
@@ -329,7 +300,9 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
     const auto pixel = [](std::int64_t i, std::int64_t samples_across, int pixels_across) {
         return static_cast<int>((2 * i + 1) * pixels_across / (2 * samples_across));
     };
-    return detail::weigh<detail::weighed_sliced, base, Clock>(
+    constexpr Options lists, z_bins = {.slicing = Slicing::z_bins}, clusters = {.slicing = Slicing::clusters},
+                             tested = {.depth_test = true, .slicing = Slicing::clusters};
+    return detail::weigh<Clock, lists, z_bins, clusters, tested>(
         view, {}, slices, lights, costs, [&](auto visit) {
             if (view.tile_count() == 0) return;
             const float* depth = samples.depths.data();
