@@ -148,7 +148,7 @@ Renderer::Listed Renderer::list_on_cpu(const lightbin::View& view, const FrameSe
     report.lights_in_view = counts.lights - counts.culled - counts.rejected;
     report.rejected = counts.rejected;
     report.entries = opaque.ids().size();
-    report.longest_list = list_lengths(opaque).longest;
+    report.longest_list = longest_list(opaque);
     report.transparent_entries = glass ? transparent.ids().size() : 0;
     const bool z_bins = settings.depth == DepthUse::z_bins;
     const auto evaluations = [this, z_bins, grid = opaque](int x, int y, float depth) {
@@ -157,8 +157,7 @@ Renderer::Listed Renderer::list_on_cpu(const lightbin::View& view, const FrameSe
         if (!z_bins) return list.size();
         return lightbin::lights_of_bin(list, grid.ranks().bins[static_cast<std::size_t>(slice)]).size();
     };
-    return {evaluations, glass ? list_lengths(transparent).longest
-                               : report.longest_list};  // no shorter than the opaque one
+    return {evaluations, glass ? longest_list(transparent) : report.longest_list};  // no shorter than the opaque one
 }
 
 // By compute shaders, where they are read. Lights and depths don't come back to the CPU.

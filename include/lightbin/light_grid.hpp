@@ -7,8 +7,6 @@
 #include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/result.hpp>
 
-#include <array>
-#include <bit>
 #include <span>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
@@ -105,7 +103,8 @@ public:
     /// have more cells or list entries than 32 bits count; a buffer is too small for all views.
     Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids, const LightGrid& before) const {
         LIGHTBIN_ASSERT(before.ranges_.data() == ranges.data() && before.ids_.data() == ids.data());
-        if (!same_cells(before)) return Error{ErrorCode::grids_differ};
+        if (tiles_x_ != before.tiles_x_ || tiles_y_ != before.tiles_y_ || slices_ != before.slices_)
+            return Error{ErrorCode::grids_differ};
         constexpr std::uint64_t limit = 0xffffffff;
         const std::uint64_t cells = std::uint64_t{before.ranges_.size()} + ranges_.size(),
                             entries = std::uint64_t{before.ids_.size()} + ids_.size();
@@ -120,11 +119,6 @@ public:
         detail::copy_items(ids_.data(), ids_.size(), ids.data() + base);
         return LightGrid(tiles_x_, tiles_y_, {ranges.data(), static_cast<std::size_t>(cells)},
                          {ids.data(), static_cast<std::size_t>(entries)}, counts_, slices_, ranks_);
-    }
-
-    /// Returns whether another grid has as many columns and rows of tiles and as many slices.
-    bool same_cells(const LightGrid& other) const {
-        return tiles_x_ == other.tiles_x_ && tiles_y_ == other.tiles_y_ && slices_ == other.slices_;
     }
 
 private:
@@ -142,20 +136,12 @@ template <class Id> std::span<const Id> lights_of_bin(std::span<const Id> list, 
     return {begin, detail::first_not(begin, end, [&](Id id) { return id <= bin.greatest; })};
 }
 
-struct ListLengths {
+/// Returns the length of a grid's longest list. Reads all ranges.
+template <class Id> std::uint32_t longest_list(const LightGrid<Id>& grid) {
     std::uint32_t longest = 0;
-    /// histogram[0] counts the tiles without lights, histogram[k] those with 2^(k-1) to 2^k - 1 lights.
-    std::array<std::uint64_t, 33> histogram = {};
-};
-
-/// Returns statistics of the lengths of a grid's lists. Reads all ranges.
-template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
-    ListLengths lengths;
-    for (const ListRange range : grid.ranges()) {
-        lengths.longest = detail::max_of(lengths.longest, range.count);
-        ++lengths.histogram[static_cast<std::size_t>(std::bit_width(range.count))];
-    }
-    return lengths;
+    for (const ListRange range : grid.ranges())
+        longest = detail::max_of(longest, range.count);
+    return longest;
 }
 
 }}  // namespace lightbin

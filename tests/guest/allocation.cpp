@@ -61,7 +61,7 @@ std::size_t frame(Binner<options>& binner, Budget<Id>& budget, Scene& scene,
     const auto use = [&](const auto& lights) {
         const auto grid = binner.bin(scene.view, lights, inputs_for<options>(bounds, scene.slices));
         if (!grid) return;
-        entries += grid->ids().size() + list_lengths(*grid).longest;
+        entries += grid->ids().size() + longest_list(*grid);
         if (const auto copy = grid->copy_to(ranges, ids)) entries += copy->ids().size();
         if (const auto limited = budget.limit(*grid, scene.weights, {.per_cell = 3, .per_frame = 200}))
             entries += limited->grid.ids().size();

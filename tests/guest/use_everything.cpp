@@ -74,7 +74,7 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     std::vector<ListRange> more_ranges(2 * ranges.size());
     std::vector<Id> more_ids(2 * ids.size());
     hash.add(value_of(grid.copy_to(more_ranges, more_ids, value_of(grid.copy_to(more_ranges, more_ids)))));
-    hash.add(list_lengths(grid).longest);
+    hash.add(longest_list(grid));
     if constexpr (options.depth_test) {
         hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));
     } else {

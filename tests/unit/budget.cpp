@@ -78,7 +78,7 @@ void check_limit(Budget<Id>& budget, const LightGrid<Id>& grid, const std::vecto
 /// Checks all limits that matter: none, and those near the longest list and near the number of entries.
 template <class Id> void check_limits(const LightGrid<Id>& grid, const std::vector<float>& weights) {
     Budget<Id> budget;
-    const std::uint32_t longest = list_lengths(grid).longest,
+    const std::uint32_t longest = longest_list(grid),
                         all = static_cast<std::uint32_t>(grid.ids().size());
     const BudgetLimits unlimited;
     for (const std::uint32_t per_cell : {0u, 1u, 3u, longest / 2, longest, longest + 1, unlimited.per_cell})
