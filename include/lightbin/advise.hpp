@@ -94,9 +94,6 @@ public:
     std::span<const AdvicePlan> plans() const& { return plans_; }
     std::span<const AdvicePlan> plans() && = delete;  // would dangle
 
-    /// Returns a table of the plans for people to read, one per line.
-    std::string text() const;
-
     /// Returns a verdict on each technique, such as tiles: compares `plan` with the cheapest measured plan that lacks
     /// the technique if `plan` uses it, or uses it if `plan` lacks it. Other options of that plan may differ as well.
     std::vector<AdviceVerdict> verdicts(const AdvicePlan& plan) const;

@@ -128,7 +128,6 @@ void add_plans(Hash& hash, const Advice& advice) {
         hash.value += plan.entries;
     }
     hash.add(static_cast<std::uint64_t>(evaluations));
-    hash.value += advice.text().empty();
     hash.value += to_string(advice).empty();
 }
 

@@ -489,7 +489,7 @@ TEST_CASE("any input") {
     CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
 }
 
-TEST_CASE("lights in any form, on any instruction set, count alike; in words, a line a plan") {
+TEST_CASE("lights in any form, on any instruction set, count alike") {
     const View view = test::view({1000, 700}, 16);
     const auto lights = test::random_lights(1000, 8);
     const float identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
@@ -497,7 +497,4 @@ TEST_CASE("lights in any form, on any instruction set, count alike; in words, a 
     const Advice first = advised_on(none_takes_time, view, lights),
                  moved = advised_on(none_takes_time, view, world_space(lights, identity));
     CHECK(moved.best().evaluations == doctest::Approx(first.best().evaluations).epsilon(0.02));
-    const std::string text = first.text();
-    CHECK(std::count(text.begin(), text.end(), '\n') == std::ssize(first.plans()) + 1);
-    CHECK(text.find("no tiling") != std::string::npos);
 }

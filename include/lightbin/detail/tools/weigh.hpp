@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How advise() and advise_slices() measure plans, and how Advice sorts and prints them and finds what techniques save.
+// How advise() and advise_slices() measure plans, and how Advice finds what techniques save.
 #pragma once
 
 #include <lightbin/advise.hpp>
@@ -27,24 +27,6 @@ inline std::string to_string(const AdviceVerdict& verdict) {
     words += line;
     words.resize((std::max)(words.size() + 1, std::size_t{50}), ' ');
     return words + "instead: " + verdict.instead + "\n";
-}
-
-LIGHTBIN_SMALL inline std::string Advice::text() const {
-    std::string lines = "   cost  tile  by     depth test  slicing      entries   build us  "
-                        "M evaluations   total us\n";
-    for (const AdvicePlan& plan : plans()) {
-        char tile[16] = "-", line[160];
-        if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
-        std::snprintf(line, sizeof line, "%7.2f  %4s  %-5s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
-                      plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
-                      !plan.tiled ? "-" : plan.masks ? "masks" : "lists",
-                      !plan.tiled ? "no tiling" : plan.depth_test ? "yes" : "no",
-                      plan.tiled ? to_string(plan.slicing) : "-",
-                      static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
-                      plan.evaluations * 1e-6, plan.total_ns * 1e-3);
-        lines += line;
-    }
-    return lines;
 }
 
 LIGHTBIN_SMALL inline std::vector<AdviceVerdict> Advice::verdicts(const AdvicePlan& plan) const {
