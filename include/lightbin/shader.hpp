@@ -43,8 +43,7 @@ struct SnippetOptions {
     /// slices. Nothing is bound at `tiles` and `bins`, and what is said of lists' formats above is not read. The size
     /// of a uniform block is uniform_block_bytes.
     bool masks = false;
-    /// The number of views whose lists lie one after another in the buffers, 1 to 512. With 2 or more, the functions
-    /// that read lists take the number of the pixel's view, counted from 0, as their last parameter.
+    /// The number of views whose lists lie one after another in the buffers, 1 to 512: see shader_snippet().
     std::uint32_t views = 1;
 
     int tile_size = 0;             ///< in pixels, a literal in the shader text; 0: read from the shader constant `grid`
@@ -58,9 +57,7 @@ struct SnippetOptions {
     /// "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017). GLSL 4.30 and ES 3.10 need
     /// GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
-    /// Adds the function `check_view`: whether a pixel shows a view-space position. It reads ViewConstants, bound at
-    /// `view`.
-    bool view_check = false;
+    bool view_check = false;  ///< adds the function `check_view`, which reads ViewConstants, bound at `view`
     bool list_check = false;  ///< adds the loop `for_each_missing` over the lights that a pixel's list lacks
     bool window = false;      ///< adds the function `window`, a light's falloff at its range: see light_window()
 
@@ -151,8 +148,8 @@ inline ViewConstants view_constants(const View& view, float tolerance = 2) {
 ///     uint lightbin_count(uvec2 pixel, float view_depth);             // with heat_map: the number of lights
 ///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // and as a colour from blue to red (`most`)
 ///     float lightbin_window(float apart, float range);                // with window: see light_window()
-///     bool lightbin_check_view(uvec2 pixel, vec3 position);           // with view_check: see below
-///     #define lightbin_for_each_missing(cursor, lights, pixel, view_depth)  // with list_check: see below
+///     bool lightbin_check_view(uvec2 pixel, vec3 position);           // with view_check
+///     #define lightbin_for_each_missing(cursor, lights, pixel, view_depth)  // with list_check
 ///
 /// In GLSL and HLSL, a shader loops over a pixel's lights like this, with every encoding, storage and slicing:
 ///
@@ -180,25 +177,18 @@ inline ViewConstants view_constants(const View& view, float tolerance = 2) {
 /// and in WGSL the text must come first in its module.
 ///
 /// With several views (options.views is 2 or more), every function and loop above that takes a pixel, except `tile`,
-/// takes the number of the pixel's view, a uint, as its last parameter:
-///
-///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth, gl_ViewID_OVR) { ... }
-///
-/// The buffers of tiles, lists and bins hold the data of view 0, then of view 1, and so on, as LightGrid::copy_to()
-/// writes tiles and lists. All views have the same `grid`, `corner` and slices. The list of a view whose number is
-/// options.views or more is empty. `check_view` has one array `image` of constants: each view's ViewConstants in turn.
+/// takes the number of the pixel's view, a uint counted from 0, as its last parameter. The buffers of tiles, lists and
+/// bins hold the data of view 0, then of view 1, and so on, as LightGrid::copy_to() writes tiles and lists. All views
+/// have the same `grid`, `corner` and slices. The list of a view whose number is options.views or more is empty.
+/// `check_view` has one array `image` of constants: each view's ViewConstants in turn.
 ///
 /// With masks the lights come in the order of LightMasks::ids(), which with z_bins is that of depth, and light.id is
 /// the position in the caller's array. Masks are of one view and have no clusters.
 ///
-/// Two checks find mistakes in the set-up, by marking the pixels where something is wrong:
-///
-///     if (!lightbin_check_view(pixel, position)) colour = magenta;
-///     lightbin_for_each_missing(light, light_count, pixel, depth) { if (shade(light.id) > 0) colour = magenta; }
-///
-/// lightbin_check_view tells whether the View projects `position`, in view space, into this pixel (within the tolerance
-/// of view_constants()) and not before its near plane. lightbin_for_each_missing loops over every id below light_count
-/// that the pixel's list lacks, which is slow; no `else` can follow its body.
+/// Two checks find pixels where the set-up is wrong. lightbin_check_view tells whether the View projects `position`, in
+/// view space, into this pixel (within the tolerance of view_constants()) and not before its near plane.
+/// lightbin_for_each_missing loops over every id below `lights` that the pixel's list lacks, which is slow; no `else` can
+/// follow its body.
 inline Result<ShaderText> shader_snippet(const SnippetOptions& options = {});
 
 }}  // namespace lightbin
