@@ -6,7 +6,6 @@
 #include <lightbin/binner.hpp>
 #include <lightbin/masks.hpp>
 
-#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
@@ -131,13 +130,15 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     const auto for_each_binner = [&](auto visit) { std::apply([&](auto&... each) { (visit(each), ...); }, binners); };
     MaskBinner mask_binner;
     // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
-    // shortest so far. A plan's first call also counts how often pixels evaluate a light or look at a word of masks.
+    // shortest so far. A plan's first call also counts how often pixels evaluate a light of its lists, or look at a word
+    // of its masks.
     const auto build = [&](AdvicePlan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)
             ++grid;
         const bool binned = plan.slicing == Slicing::z_bins, clusters = plan.slicing == Slicing::clusters;
         const Slices& by = clusters ? slices.clusters : slices.z_bins;
+        const double layers = plan.has_z_bounds() ? 1 : costs.overdraw;
         const auto timed = [&](const auto& bin) {
             const auto start = Clock::now();
             const auto built = bin();
@@ -154,18 +155,13 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             if (!first) return std::nullopt;
             plan.upload_ns = costs.upload_byte_ns * static_cast<double>(built->words().size_bytes());
             plan.entries = built->words().size();
-            for_each_visible([&](int x, int y, float depth, double pixels) {
-                BinRange range = {0, 32 * built->mask_words() - 1};
-                if (binned) range = built->bins()[static_cast<std::size_t>(by.slice_at(depth))];
-                const auto column = built->column(x / plan.tile_size), row = built->row(y / plan.tile_size);
-                const std::uint32_t last = range.greatest / 32;  // a bin without lights is {1, 0}
-                for (std::uint32_t w = range.least / 32; w < column.size() && w <= last; ++w) {
-                    std::uint32_t bits = column[w] & row[w];
-                    if (w == range.least / 32) bits &= 0xffffffffu << range.least % 32;
-                    if (w == last) bits &= 0xffffffffu >> (31 - range.greatest % 32);
-                    plan.words += pixels;
-                    plan.evaluations += pixels * std::popcount(bits);
+            for_each_visible([&](int, int, float depth, double pixels) {
+                std::uint32_t words = built->mask_words();
+                if (binned) {
+                    const BinRange bin = built->bins()[static_cast<std::size_t>(by.slice_at(depth))];
+                    words = min_of(words, bin.greatest / 32 + 1 - bin.least / 32);  // a bin without lights is {1, 0}
                 }
+                plan.words += layers * pixels * words;
             });
             return std::nullopt;
         };
@@ -183,22 +179,15 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
                 const int slice = binned || clusters ? by.slice_at(depth) : 0;
                 auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size, clusters ? slice : 0);
                 if (binned) list = lights_of_bin(list, ranks.bins[static_cast<std::size_t>(slice)]);
-                plan.evaluations += pixels * static_cast<double>(list.size());
+                plan.evaluations += layers * pixels * static_cast<double>(list.size());
             });
             return std::nullopt;
         };
+        if (plan.masks) return build_masks();
         std::optional<Error> error;
-        if (plan.masks)
-            error = build_masks();
-        else
-            for_each_binner([&]<Options options>(Binner<options>& binner) {
-                if (plan.depth_test == options.depth_test && plan.slicing == options.slicing)
-                    error = build_lists(binner);
-            });
-        if (first && !plan.has_z_bounds()) {
-            plan.words *= costs.overdraw;
-            plan.evaluations *= costs.overdraw;
-        }
+        for_each_binner([&]<Options options>(Binner<options>& binner) {
+            if (plan.depth_test == options.depth_test && plan.slicing == options.slicing) error = build_lists(binner);
+        });
         return error;
     };
 
@@ -207,22 +196,24 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     for_each_visible([&](int, int, float, double pixels) {
         plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(light_count(source));
     });
+    std::optional<Error> error;
     for (const WeighedGrid& grid : grids)
         for_each_binner([&]<Options options>(const Binner<options>&) {
             const bool lacks_bounds = grid.bounds.min.empty() && grid.bounds.max.empty();
-            if (options.depth_test && options.slicing == Slicing::none && lacks_bounds) return;
+            if (error || (options.depth_test && options.slicing == Slicing::none && lacks_bounds)) return;
             AdvicePlan plan = {.depth_test = options.depth_test,
                                .slicing = options.slicing,
                                .tile_size = grid.view.tile_size(),
                                .build_ns = HUGE_VAL};
+            error = build(plan, lights, true);
             plans.push_back(plan);
-            if (options.depth_test || options.slicing == Slicing::clusters) return;
-            plan.masks = true;
+            if (error || options.depth_test || options.slicing == Slicing::clusters) return;
+            plan.masks = true;  // of the same lights, so that pixels evaluate as many
+            plan.build_ns = HUGE_VAL;
+            error = build(plan, lights, true);
             plans.push_back(plan);
         });
-    for (AdvicePlan& plan : plans)
-        if (plan.tiled)
-            if (const auto error = build(plan, lights, true)) return *error;
+    if (error) return *error;
 
     // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
     // above, took longer because they allocated memory. In each turn the lights are moved sideways, by up to 1/32 of
