@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "advise_scene.hpp"
 
-#include "binned_lights.hpp"
 #include "draw_times.hpp"
 #include "projection.hpp"
 #include "value_of.hpp"
-#include "way_costs.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
+using lightbin::AdvicePlan;
 using lightbin::Slicing;
-using lightbin::AdviceVerdict;
 
 namespace {
-
-// A part that saves less than a hundredth of the frame is not worth its lines, nor can the clock tell.
-constexpr double least_gain = 0.01;
 
 __attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
     char line[400];
@@ -32,236 +28,168 @@ __attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) 
     return line;
 }
 
-// A part of a way, and another way that differs in it.
-struct Part {
-    AdviceVerdict verdict;
-    Way other;
-    bool by_itself = false;  // nothing else differs but the tile size, so what gains little is left out
-    double gain = 0;         // what a frame takes less by the other, nanoseconds
-};
-
-Way with(Way way, bool Way::*part, bool value) {
-    way.*part = value;
-    return way;
+glm::mat4 projection_of(const Camera& camera, lightbin::ImageSize size) {
+    return projection_of(camera, static_cast<double>(size.width) / size.height);
 }
 
-// Every part of a way.
-std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const WayCosts& costs) {
-    std::vector<Part> parts;
-    const auto add_switch = [&](const char* name, bool Way::*part, const std::string& on, const char* off) {
-        parts.push_back({{.part = name, .keep = way.*part, .instead = way.*part ? off : on},
-                         with(way, part, !(way.*part)),
-                         true});
-    };
-    for (const AdviceVerdict& verdict : advice.verdicts(way.plan)) {
-        if (verdict.part == "masks") continue;  // see WayCosts::advise()
-        Part part = {verdict, way};
-        const auto take = [&](const lightbin::AdvicePlan& plan) {
-            part.other.plan = plan;
-            part.verdict.instead = to_string(plan);
-            part.by_itself = plan.tiled && (plan.depth_test != way.plan.depth_test) !=
-                                               (plan.slicing != way.plan.slicing);
-        };
-        if (!verdict.instead.empty()) take(verdict.other);
-        if (!way.plan.has_z_bounds()) part.other.minimum = part.other.maximum = true;
-        parts.push_back(part);
-        if (verdict.part != "pre-pass") continue;
-
-        const Way without = way.plan.has_z_bounds() ? part.other : way;
-        for (const bool minimum : {true, false}) {
-            bool Way::*const side = minimum ? &Way::minimum : &Way::maximum;
-            bool Way::*const other_side = minimum ? &Way::maximum : &Way::minimum;
-            const std::string name = minimum ? "minimum" : "maximum", rest = minimum ? "maximum" : "minimum";
-            if (!way.plan.has_z_bounds())
-                parts.push_back({{.part = name, .instead = "a pre-pass and the " + name + " alone"},
-                                 with(part.other, other_side, false)});
-            else if (way.*side && !(way.*other_side))
-                parts.push_back({{.part = name, .keep = true, .instead = part.verdict.instead}, without});
-            else
-                add_switch(name.c_str(), side, "both", ("the " + rest + " alone").c_str());
-        }
-    }
-    if (costs.light_count() <= 65536) add_switch("16-bit ids", &Way::narrow_ids, "16 bits", "32 bits");
-    add_switch("threads", &Way::threads, std::to_string(costs.workers()) + " threads", "one thread");
-    if (costs.has_cones())
-        add_switch("cones", &Way::cones, "spots as spots", "spots as the least spheres around them");
-    return parts;
+BinnedLights placed(const Scene& scene, const Camera& camera) {
+    BinnedLights lights(scene);
+    lights.place(glm::inverse(camera.to_world));
+    return lights;
 }
 
-// What was found: a way, what each part of it saves, and ways that are no good idea beside it.
-struct Found {
-    Way way;
-    std::vector<Part> parts;
-    WayCost cost, plain, untiled, everything;
-    lightbin::AdvicePlan plain_plan, everything_plan;
-};
+}  // namespace
 
-// Begins with the cheapest plan, and goes on to the best of the ways that differ in one part as long as that gains, so
-// that in the end each part was measured beside all others as they are advised.
-Found find(WayCosts& costs) {
-    const lightbin::Advice advice = costs.advise();
-    Found found;
-    found.way.plan = advice.best();
-    const auto plain =
-        std::find_if(advice.plans().begin(), advice.plans().end(), [](const lightbin::AdvicePlan& plan) {
-            return plan.tiled && !plan.depth_test && plan.slicing == Slicing::none;
-        });
-    found.plain_plan = *plain;
-    for (int round = 1;; ++round) {
-        found.parts = parts_of(found.way, advice, costs);
-        found.everything_plan = {
-            .depth_test = true, .tile_size = found.way.plan.tiled ? found.way.plan.tile_size : plain->tile_size};
-        std::vector<Way> ways = {
-            found.way,
-            {.plan = found.plain_plan},
-            {.plan = {.tiled = false}},
-            {.plan = found.everything_plan, .narrow_ids = costs.light_count() <= 65536, .threads = true}};
-        for (const Part& part : found.parts)
-            ways.push_back(part.other);
-        const std::vector<WayCost> measured = costs.measure(ways);
-        found.cost = measured[0];
-        found.plain = measured[1];
-        found.untiled = measured[2];
-        found.everything = measured[3];
-        const double total = found.cost.total();
-        for (std::size_t i = 0; i < found.parts.size(); ++i) {
-            Part& part = found.parts[i];
-            part.gain = total - measured[4 + i].total();
-            part.verdict.saved_ns = -part.gain;
-        }
-        const Part* best = nullptr;
-        double most = 0;
-        for (const Part& part : found.parts) {
-            const bool removes = part.by_itself && part.verdict.keep;
-            const double worth = part.gain + (removes ? least_gain : -least_gain) * total;
-            if (worth > most && !part.verdict.instead.empty()) most = worth, best = &part;
-        }
-        if (best == nullptr || round == 8) return found;
-        found.way = Way(best->other);
+AdvisedView::AdvisedView(const Scene& scene, const Camera& camera, lightbin::ImageSize size)
+    : view_(value_of(lightbin::View::from_projection(projection_of(camera, size), size, {.tile_size = 8}))),
+      lights_(placed(scene, camera)),
+      depth_(draw_depth_on_cpu(scene, glm::dmat4(projection_of(camera, size)) * glm::inverse(camera.to_world),
+                               size)),
+      min_(view_.tile_count()), max_(min_), reduce_ns_(HUGE_VAL),
+      clusters_(slices_for(DepthMethod::clusters, view_.orthographic(), lights_.listed())),
+      z_bins_(slices_for(DepthMethod::z_bins, view_.orthographic(), lights_.listed())) {
+    for (int turn = 0; turn < 5; ++turn) {
+        const auto start = std::chrono::steady_clock::now();
+        static_cast<void>(value_of(
+            lightbin::reduce_depth(view_, {.depth = depth_.depth, .skip_background = true}, {min_, max_})));
+        const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+        reduce_ns_ = std::min(reduce_ns_, time.count());
     }
 }
+
+double AdvisedView::plain_evaluations() {
+    const lightbin::View view = value_of(view_.with_tile_size(16));
+    const auto grid = lights_.bin(view, {}, {}, {}).opaque;
+    const int width = view.viewport().width;
+    double evaluations = 0;
+    for (std::size_t i = 0; i < depth_.depth.size(); ++i) {
+        const int pixel = static_cast<int>(i);
+        if (depth_.depth[i] < 1)
+            evaluations += static_cast<double>(grid.lights_in(pixel % width / 16, pixel / width / 16).size());
+    }
+    return evaluations * depth_.overdraw;
+}
+
+lightbin::Advice AdvisedView::advise(lightbin::AdviceCosts costs) const {
+    costs.overdraw = depth_.overdraw;
+    // A pixel of 16, where that leaves some.
+    const auto [width, height] = view_.viewport();
+    const int step = std::min(width, height) < 64 ? 1 : 4;
+    const lightbin::ImageSize size = {width / step, height / step};
+    std::vector<float> samples;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const float window =
+                depth_.depth[static_cast<std::size_t>((y * step + step / 2) * width + x * step + step / 2)];
+            const double z = static_cast<double>(window);
+            samples.push_back(window < 1 ? view_.view_depths(z, z).min
+                                         : std::numeric_limits<float>::infinity());
+        }
+    return lights_.visit_lights(-1, [&](const auto& lights) {
+        const auto all = lightbin::lights(lights, lightbin::view_space(lights_.boxes(), box_of));
+        const lightbin::Advice bounded = value_of(lightbin::advise(view_, all, costs, {min_, max_})),
+                               sliced = value_of(lightbin::advise_slices(
+                                   view_, all, {.clusters = clusters_, .z_bins = z_bins_},
+                                   {.depths = samples, .size = size}, costs));
+        std::vector<AdvicePlan> plans(bounded.plans().begin(), bounded.plans().end());
+        for (const AdvicePlan& plan : sliced.plans())
+            if (plan.slicing != Slicing::none) plans.push_back(plan);
+        return lightbin::Advice(plans);
+    });
+}
+
+// From their boundaries, as slices_for() lays them.
+std::string AdvisedView::slices_in_words(Slicing slicing) const {
+    const lightbin::Slices& slices = slicing == Slicing::z_bins ? z_bins_ : clusters_;
+    const auto boundary = [&](std::size_t i) { return static_cast<double>(slices.boundaries()[i]); };
+    const int count = slices.count();
+    if (slicing == Slicing::z_bins || view_.orthographic())
+        return text("linear(%d, 0, %#.4gf)", count, boundary(0) * count);
+    return text("exponential(%d, %#.4gf, %#.4gf)", count, boundary(0),
+                boundary(0) * std::pow(boundary(1) / boundary(0), count - 1));
+}
+
+namespace {
 
 // The lines of C++ that do as is advised.
-std::string code(const Found& found, WayCosts& costs) {
-    const Way& way = found.way;
-    const lightbin::AdvicePlan& plan = way.plan;
+std::string code(const AdvicePlan& plan, const AdvisedView& seen, const Scene& scene, bool reduced_on_gpu) {
     if (!plan.tiled) return "// No lists: the shader goes through all lights.\n";
-    const auto [width, height] = costs.view().viewport();
+    const auto [width, height] = seen.view().viewport();
     std::string lines =
         text("auto view = lightbin::View::from_projection(projection, {%d, %d}, {.tile_size = %d});\n", width,
              height, plan.tile_size);
-    std::vector<std::string> options;
-    if (way.narrow_ids) options.push_back(".ids = lightbin::IdWidth::u16");
-    if (plan.depth_test) options.push_back(".depth_test = true");
-    if (plan.slicing != Slicing::none)
-        options.push_back(".slicing = lightbin::Slicing::" + std::string(to_string(plan.slicing)));
-    std::string all;
-    for (const std::string& option : options)
-        all += (all.empty() ? "lightbin::Options{" : ",\n                                   ") + option;
-    lines += "lightbin::Binner<" + all + (all.empty() ? "" : "}") + "> binner;  // once\n";
-
-    std::string inputs = "{}";
-    if (plan.slicing != Slicing::none) {
-        lines += "auto slices = lightbin::Slices::" + costs.slices_in_words(plan.slicing) + ";\n";
-        inputs = "{.slices = *slices}";
+    const bool sliced = plan.slicing != Slicing::none;
+    const std::string slicing = std::string(".slicing = lightbin::Slicing::") + to_string(plan.slicing);
+    std::string inputs;
+    if (sliced) {
+        lines += "auto slices = lightbin::Slices::" + seen.slices_in_words(plan.slicing) + ";\n";
+        inputs = plan.masks ? ", *slices" : ", {.slices = *slices}";
     } else if (plan.has_z_bounds()) {
-        std::vector<std::string> sides;
-        if (way.minimum) sides.push_back("min");
-        if (way.maximum) sides.push_back("max");
-        std::string vectors, spans;
-        for (const std::string& side : sides) {
-            vectors += (vectors.empty() ? "" : ", ") + side +
-                       (vectors.empty() ? "(view->tile_count())" : "(" + sides[0] + ")");
-            spans += (spans.empty() ? "." : ", .") + side + " = " + side;
-        }
-        lines += "std::vector<float> " + vectors + ";";
-        inputs = "{.bounds = *bounds}";
-        if (costs.reduces_on_gpu(way)) {
-            lines += "  // as lightbin::reduce_shader() writes them\n";
-            inputs = "{.bounds = {" + spans + "}}";
-        } else {
-            lines += "\nauto bounds = lightbin::reduce_depth(\n"
-                     "    *view, {.depth = depth_buffer, .skip_background = true},\n"
-                     "    {" +
-                     spans + "});\n";
-        }
+        lines += "std::vector<float> min(view->tile_count()), max(min);";
+        lines += reduced_on_gpu
+                     ? "  // as lightbin::reduce_shader() writes them\n"
+                     : "\nauto bounds = lightbin::reduce_depth(\n"
+                       "    *view, {.depth = depth_buffer, .skip_background = true}, {min, max});\n";
+        inputs = reduced_on_gpu ? ", {.bounds = {min, max}}" : ", {.bounds = *bounds}";
     }
-    const std::string next =
-        inputs.size() > 60 ? ",\n                       " : ", ";  // lines of 100 columns at most
-    std::string arguments = "*view, lights";
-    if (way.threads || inputs != "{}") arguments += next + inputs;
-    if (way.threads) arguments += next + "lightbin::Parallel(pool.size(), run)";
-    const std::string lamps = std::string("lightbin::world_space(lamps, view_matrix, ") +
-                              (costs.has_cones() && way.cones ? "to_spot)" : "to_sphere)");
+    if (plan.masks)
+        lines += "lightbin::MaskBinner binner;  // once\n";
+    else
+        lines += std::string("lightbin::Binner<lightbin::Options{") +
+                 (plan.depth_test ? ".depth_test = true" : "") +
+                 (plan.depth_test && sliced ? ",\n                                   " : "") +
+                 (sliced ? slicing : "") + "}> binner;  // once\n";
+    const bool spots = std::ranges::any_of(scene.lights, &Light::spot);
+    const std::string lamps =
+        std::string("lightbin::world_space(lamps, view_matrix, ") + (spots ? "to_spot)" : "to_sphere)");
     lines += "auto lights = " +
-             (costs.has_boxes() ? "lightbin::lights(" + lamps +
-                                      ",\n                               "
-                                      "lightbin::world_space(decals, view_matrix, to_box))"
-                                : lamps) +
+             (scene.boxes.empty() ? lamps
+                                  : "lightbin::lights(" + lamps +
+                                        ",\n                               "
+                                        "lightbin::world_space(decals, view_matrix, to_box))") +
              ";\n";
-    lines += "auto grid = binner.bin(" + arguments + ");\n";
-    lines += "auto shader = lightbin::shader_snippet({.format = decltype(binner)::list_format";
-    if (plan.slicing != Slicing::none)
-        lines += std::string(",\n                                        .slicing = lightbin::Slicing::") +
-                 to_string(plan.slicing);
-    return lines + text(", .tile_size = %d});\n", plan.tile_size);
+    lines += std::string(plan.masks ? "auto masks" : "auto grid") + " = binner.bin(*view, lights" + inputs +
+             ");\n";
+    const std::string read =
+        plan.masks ? (sliced ? slicing + ", " : "") + ".masks = true"
+                   : ".format = decltype(binner)::list_format" +
+                         (sliced ? ",\n                                        " + slicing : "");
+    return lines + "auto shader = lightbin::shader_snippet({" + read +
+           text(", .tile_size = %d});\n", plan.tile_size);
 }
 
-// The view of the file, or of the one that is asked for, whose plain tiles shade most.
-std::unique_ptr<WayCosts> worst_view(const Scene& scene, const AdviseSettings& settings, std::size_t& at,
-                                     double& evaluations) {
-    std::unique_ptr<WayCosts> worst;
-    const double aspect = static_cast<double>(settings.width) / settings.height;
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        if (settings.view >= 0 && i != static_cast<std::size_t>(settings.view)) continue;
-        const Camera& camera = scene.cameras[i];
-        const glm::dmat4 world_to_view = glm::inverse(camera.to_world);
-        const glm::mat4 projection = projection_of(camera, aspect);
-        const lightbin::View view = value_of(
-            lightbin::View::from_projection(projection, {settings.width, settings.height}, {.tile_size = 8}));
-        BinnedLights lights(scene);
-        lights.place(world_to_view);
-        auto costs = std::make_unique<WayCosts>(
-            view, projection, lights,
-            draw_depth_on_cpu(scene, glm::dmat4(projection) * world_to_view, view.viewport()));
-        costs->set({.evaluation_ns = 1});
-        const Way plain = {.plan = {.tile_size = 16}};
-        const double count = costs->measure({&plain, 1})[0].shade;
-        if (worst != nullptr && count <= evaluations) continue;
-        worst = std::move(costs);
-        at = i;
-        evaluations = count;
-    }
-    return worst;
-}
+// What this machine's OpenGL takes, or without one what is assumed of it.
+struct Prices {
+    lightbin::AdviceCosts costs = {.upload_byte_ns = 0.1};
+    bool reduced_on_gpu = false;
+    std::string words;
+};
 
-// What this machine's OpenGL takes, or without one what is assumed of it, in words, too.
-Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings& settings,
-                 std::string& words) {
+Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings& settings, double reduce_ns) {
     Prices prices;
+    lightbin::AdviceCosts& costs = prices.costs;
+    costs.z_bounds_ns = reduce_ns;
     try {
         const DrawTimes times = draw_times(scene, camera, settings.width, settings.height, settings.glsl);
         const bool told = times.evaluation_ns > 0, reads_back = times.glsl >= 330;
-        if (told) prices.evaluation_ns = times.evaluation_ns;
-        if (times.upload_byte_ns > 0) prices.upload_byte_ns = times.upload_byte_ns;
-        prices.depth_pass_ns = times.depth_pass_ns;
-        prices.read_back_ns = reads_back ? times.read_back_ns : HUGE_VAL;
-        prices.gpu_reduction_ns = times.gpu_reduction_ns;
-        words = text("OpenGL       %.60s, GLSL %d\n", times.renderer.c_str(), times.glsl);
-        words += text("costs        %.4g ns a light evaluation%s %.3g ns a byte of the lists;\n",
-                      prices.evaluation_ns,
-                      told ? "," : " (assumed: there are too few to time),\n            ",
-                      prices.upload_byte_ns);
-        words += text("             the pre-pass %.3f ms; its Z bounds %.3f ms by a shader",
-                      1e-6 * times.depth_pass_ns, 1e-6 * times.gpu_reduction_ns);
-        words +=
-            reads_back ? text("; to read it back %.3f ms\n", 1e-6 * times.read_back_ns) : std::string("\n");
+        if (told) costs.evaluation_ns = times.evaluation_ns;
+        if (times.upload_byte_ns > 0) costs.upload_byte_ns = times.upload_byte_ns;
+        prices.reduced_on_gpu = !reads_back || times.gpu_reduction_ns < times.read_back_ns + reduce_ns;
+        costs.z_bounds_ns = times.depth_pass_ns +
+                            (prices.reduced_on_gpu ? times.gpu_reduction_ns : times.read_back_ns + reduce_ns);
+        prices.words = text("OpenGL       %.60s, GLSL %d\n", times.renderer.c_str(), times.glsl);
+        prices.words += text(
+            "costs        %.4g ns a light evaluation%s %.3g ns a byte of the lists;\n", costs.evaluation_ns,
+            told ? "," : " (assumed: there are too few to time),\n            ", costs.upload_byte_ns);
+        prices.words += text("             the pre-pass %.3f ms; its Z bounds %.3f ms by %s\n",
+                             1e-6 * times.depth_pass_ns, 1e-6 * (costs.z_bounds_ns - times.depth_pass_ns),
+                             prices.reduced_on_gpu ? "a shader" : "the CPU, with the read-back");
     } catch (const std::runtime_error& problem) {
-        words = text("OpenGL       none: %.80s\n", problem.what());
-        words += text(
+        prices.words = text("OpenGL       none: %.80s\n", problem.what());
+        prices.words += text(
             "costs        assumed: %.4g ns a light evaluation, as on a GPU, %.3g ns a byte of the lists;\n"
-            "             the draw of the pre-pass is left out\n",
-            prices.evaluation_ns, prices.upload_byte_ns);
+            "             Z bounds %.3f ms by the CPU; the draw of the pre-pass is left out\n",
+            costs.evaluation_ns, costs.upload_byte_ns, 1e-6 * costs.z_bounds_ns);
     }
     return prices;
 }
@@ -269,41 +197,35 @@ Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings&
 }  // namespace
 
 std::string advise_scene(const Scene& scene, const AdviseSettings& settings) {
-    std::size_t view = 0;
+    // The view that is asked for, or the one whose plain tiles shade most.
+    std::unique_ptr<AdvisedView> seen;
+    std::size_t at = 0;
     double evaluations = 0;
-    const std::unique_ptr<WayCosts> costs = worst_view(scene, settings, view, evaluations);
-    const Camera& camera = scene.cameras[view];
-    std::string words;
-    costs->set(prices_of(scene, camera, settings, words));
-    const Found found = find(*costs);
-
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        if (settings.view >= 0 && i != static_cast<std::size_t>(settings.view)) continue;
+        auto view = std::make_unique<AdvisedView>(scene, scene.cameras[i],
+                                                  lightbin::ImageSize{settings.width, settings.height});
+        const double count = view->plain_evaluations();
+        if (seen != nullptr && count <= evaluations) continue;
+        seen = std::move(view);
+        at = i;
+        evaluations = count;
+    }
+    const Camera& camera = scene.cameras[at];
+    const Prices prices = prices_of(scene, camera, settings, seen->reduce_ns());
+    const lightbin::Advice advice = seen->advise(prices.costs);
     std::string page =
-        text("view         %zu, \"%.40s\", %d x %d pixels%s\n", view, camera.name.c_str(), settings.width,
+        text("view         %zu, \"%.40s\", %d x %d pixels%s\n", at, camera.name.c_str(), settings.width,
              settings.height, settings.view < 0 ? ", the one that shades most" : "");
-    page += words;
+    page += prices.words;
     page += text(
         "overdraw     %.2f: without a pre-pass so many fragments are shaded for each pixel that is seen;\n"
         "             plain tiles of 16 px evaluate %.1f lights%s a pixel\n",
-        costs->overdraw(), evaluations / settings.width / settings.height,
-        costs->has_boxes() ? " and boxes" : "");
+        seen->overdraw(), evaluations / settings.width / settings.height,
+        scene.boxes.empty() ? "" : " and boxes");
     if (!scene.transparent.empty())
         page +=
             "             glass is left out; with Z bounds it needs lists of its own, by the maximum alone\n";
-    const auto ms = [](double ns) { return 1e-6 * ns; };
-    page +=
-        text("frame        %.3f ms as advised: depth %.3f, build %.3f, upload %.3f, light evaluations %.3f\n",
-             ms(found.cost.total()), ms(found.cost.depth), ms(found.cost.build), ms(found.cost.upload),
-             ms(found.cost.shade));
-    page += text("             %.3f ms by plain tiles (%d px); %.3f ms by every light in every pixel;\n"
-                 "             %.3f ms by all parts that combine, those that save little, too\n",
-                 ms(found.plain.total()), found.plain_plan.tile_size, ms(found.untiled.total()),
-                 ms(found.everything.total()));
-    page += text("             %.3f ms by %s, as advise() weighs it\n", ms(costs->masks().total_ns),
-                 to_string(costs->masks()).c_str());
-    page += "advised      " + to_string(found.way.plan) + "\n";
-    for (const Part& part : found.parts)
-        page += to_string(part.verdict);
-    if (costs->light_count() > 65536) page += "16-bit ids   leave out: there are more than 65,536 lights\n";
-    if (!costs->has_cones()) page += "cones        leave out: no light has one\n";
-    return page + "code\n" + code(found, *costs);
+    return page + "advised      " + to_string(advice) + "code\n" +
+           code(advice.best(), *seen, scene, prices.reduced_on_gpu);
 }

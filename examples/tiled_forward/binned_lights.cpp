@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cstddef>
 
-lightbin::Slices slices_for(const BinSettings& settings, bool orthographic,
-                            std::span<const GpuLight> lights) {
+lightbin::Slices slices_for(DepthMethod method, bool orthographic, std::span<const GpuLight> lights) {
     float last = 0;  // as deep as any light reaches
     for (const GpuLight& light : lights)
         last = std::max(last, light.sphere.w - light.sphere.z);
     if (!(last < 1e30f)) last = 1e30f;  // a light without an end
     if (last == 0) last = 1;            // all lights are behind the eye
-    if (settings.method == DepthMethod::z_bins) return value_of(lightbin::Slices::linear(1024, 0, last));
-    return value_of(orthographic ? lightbin::Slices::linear(settings.clusters, 0, last)
-                                 : lightbin::Slices::exponential(settings.clusters, last / 40, last));
+    if (method == DepthMethod::z_bins) return value_of(lightbin::Slices::linear(1024, 0, last));
+    return value_of(orthographic ? lightbin::Slices::linear(24, 0, last)
+                                 : lightbin::Slices::exponential(24, last / 40, last));
 }
 
 BinnedLights::BinnedLights(const Scene& scene)
@@ -89,7 +88,7 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& 
     }
 
     // What is at any depth has its lights, glass too.
-    slices_ = slices_for(settings, view.orthographic(), listed());
+    slices_ = slices_for(settings.method, view.orthographic(), listed());
     if (settings.method == DepthMethod::clusters)
         return same(value_of(cluster_binner_.bin(view, lights, {.slices = *slices_})));
     const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));

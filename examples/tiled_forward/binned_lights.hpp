@@ -23,13 +23,12 @@ enum class DepthMethod {
 
 struct BinSettings {
     DepthMethod method = DepthMethod::none;
-    int clusters = 24;       // slices of depth
     bool glass = false;      // Z bounds: lists for it, too
     int dropped_light = -1;  // id of what the lists leave out, so that a check can be seen to fail
 };
 
-// The slices of the depths that lights in view space reach; of z-bins a thousand.
-lightbin::Slices slices_for(const BinSettings& settings, bool orthographic, std::span<const GpuLight> lights);
+// The slices of the depths that lights in view space reach: a thousand z-bins, or 24 for clusters.
+lightbin::Slices slices_for(DepthMethod method, bool orthographic, std::span<const GpuLight> lights);
 
 class BinnedLights {
 public:

@@ -178,7 +178,7 @@ Renderer::Listed Renderer::list_on_gpu(const lightbin::View& view, const FrameSe
     slices_.reset();
     if (bounded) lists = {true, settings.z_bounds == ZBoundsUse::max};
     if (settings.depth == DepthUse::clusters) {
-        slices_ = slices_for({.method = DepthMethod::clusters}, view.orthographic(), binned_.listed());
+        slices_ = slices_for(DepthMethod::clusters, view.orthographic(), binned_.listed());
         lists = {true, false, &*slices_};
         const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
         upload(slices_buffer_, words.data(), 4 * words.size(), static_cast<int>(list_binding_.width),
