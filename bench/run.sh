@@ -21,8 +21,8 @@
 #   frames [--quick] [--counts] [--into=FOLDER] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of
 #       bench/scenes). --counts leaves the times out, for a machine that is at work. A scene of ten views or more is taken
-#       for a camera's path. Writes to build/bench, or to FOLDER, which it makes: frames.txt, frames.csv, frames_paths.csv
-#       and the plots frames_times and frames_evaluations, .svg and .png.
+#       for a camera's path. Writes to build/bench, or to FOLDER, which it makes: frames.txt, frames.csv and the plots
+#       frames_times.png and frames_evaluations.png.
 #   gpu [--quick]
 #       Builds on the GPU by shader_cull beside builds on the CPU with their upload, in OpenGL. GPU's lists that lack an
 #       entry of the CPU's, or are out of order, are an error. Writes build/bench/gpu.csv.
@@ -89,12 +89,23 @@ frames)
     failed=
     ./bench/frames/frames "$@" >frames.txt || failed=yes
     cat frames.txt
-    rm -f frames_times.* frames_evaluations.*
-    [ "$(wc -l <frames_paths.csv)" -lt 2 ] || gnuplot ../../bench/plot_frames.gp
-    for file in frames.txt frames.csv frames_paths.csv frames_times.png frames_evaluations.png; do
+    rm -f frames_times.png frames_evaluations.png
+    # A frame's number ends the name of its view; where none does, the views are numbered.
+    awk -F'"' '/^path/ {
+        split($5, row, ","); sub(/\.glb$/, "", $2); panel = $2 ": " row[2] " lights"
+        if (panel != last_panel) frame = 0; else if ($4 != last_view) ++frame
+        last_panel = panel; last_view = $4
+        match($4, /[0-9]*$/)
+        line = panel "," (RLENGTH > 0 ? substr($4, RSTART) : frame) "," row[3] "," row[4] / 1e6 "," row[5]
+        gsub(/ /, "_", line)
+        print line
+    }' frames.csv >frames_paths
+    [ ! -s frames_paths ] || gnuplot ../../bench/plot_frames.gp
+    rm frames_paths
+    for file in frames.txt frames.csv frames_times.png frames_evaluations.png; do
         [ -z "$into" ] || [ ! -e $file ] || cp $file "$into"
     done
-    echo "$me: wrote frames.txt, frames.csv, frames_paths.csv and the plots to ${into:-build/bench}"
+    echo "$me: wrote frames.txt, frames.csv and the plots to ${into:-build/bench}"
     [ -z "$failed" ]
     exit
     ;;

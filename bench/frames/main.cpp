@@ -78,7 +78,6 @@ int run(Arguments arguments) {
     for (const std::string& line : left_out.lines())
         std::printf("%s\n", line.c_str());
     write_csv(rows);
-    write_paths(rows);
     return pictures_are_as_stated(rows) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "report.hpp"
 
-#include "cases.hpp"
 #include "plan.hpp"
 
 #include "../console.hpp"
@@ -155,26 +154,6 @@ void write_csv(const std::vector<Row>& rows) {
             std::fprintf(file, "%s%s %.3f (%.3f to %.3f)", &pass == &row.passes.front().first ? "" : "; ",
                          pass.c_str(), times.median, times.least, times.most);
         std::fprintf(file, "\n");
-    }
-    std::fclose(file);
-}
-
-void write_paths(const std::vector<Row>& rows) {
-    std::FILE* const file = open_report("frames_paths.csv", "panel,frame,technique,million_evaluations,ms");
-    std::string panel, first;
-    int view = 0;
-    for (const Row& row : rows) {
-        if (!row.table.starts_with("path")) continue;
-        std::string its = row.scene.substr(0, row.scene.rfind(".glb")) + ": " + counted(row.lights, "light");
-        std::erase_if(its, [](char c) { return c == '"' || c == '\''; });  // which the plot cannot take
-        if (its != std::exchange(panel, its)) {
-            view = -1;
-            first = row.technique;
-        }
-        if (row.technique == first) ++view;
-        const int frame = frame_of(row.view);
-        std::fprintf(file, "\"%s\",%d,%s,%.6f,%.3f\n", its.c_str(), frame < 0 ? view : frame,
-                     row.technique.c_str(), millions(row), row.frame.median);
     }
     std::fclose(file);
 }

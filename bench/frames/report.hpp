@@ -13,6 +13,3 @@ void print_price_of_words(const std::vector<Row>& rows);
 
 /// Writes frames.csv, a line a row.
 void write_csv(const std::vector<Row>& rows);
-
-/// Writes frames_paths.csv: light evaluations and times along camera paths, for the plots.
-void write_paths(const std::vector<Row>& rows);
