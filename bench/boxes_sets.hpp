@@ -2,8 +2,9 @@
 // Generated boxes of several shapes, and sets of them in front of the camera of sets.hpp.
 #pragma once
 
-#include "dice.hpp"
 #include "spots_sets.hpp"
+
+#include <dice.hpp>
 
 #include <lightbin/box.hpp>
 

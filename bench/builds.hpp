@@ -19,20 +19,12 @@ public:
         : made_(tile_size),
           slices_(options.slicing == lightbin::Slicing::clusters ? cluster_slices() : z_bin_slices()), binner_(isa) {}
 
-    /// Returns the light grid of some lights, valid until the next call.
-    template <class AnyLights>
-    auto grid(const lightbin::View& view, const AnyLights& lights, const lightbin::Parallel& threads = {}) {
-        return *binner_.bin(view, lights, lightbin::inputs_for<options>(made_.bounds, slices_), threads);
-    }
-    /// How many entries the grid has.
+    /// Builds the lists of some lights, and returns how many entries they have.
     template <class AnyLights>
     std::size_t operator()(const lightbin::View& view, const AnyLights& lights,
                            const lightbin::Parallel& threads = {}) {
-        return grid(view, lights, threads).ids().size();
+        return binner_.bin(view, lights, lightbin::inputs_for<options>(made_.bounds, slices_), threads)->ids().size();
     }
-
-    lightbin::Binner<options>& binner() { return binner_; }
-    const lightbin::Slices& slices() const { return slices_; }
 
 private:
     MadeBounds made_;

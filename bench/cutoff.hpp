@@ -27,8 +27,7 @@
 /// How a picture differs from the reference, in parts of white.
 struct Difference {
     double rmse = 0;
-    double lost = 0;           ///< mean of the light that the picture lacks
-    double rmse_restored = 0;  ///< error once that mean is added to every pixel, like an ambient term
+    double rmse_restored = 0;  ///< error once the mean of the lost light is added to every pixel, like an ambient term
 };
 
 class CutoffStudy {
@@ -69,7 +68,7 @@ public:
         const Spots spots = spots_of(lights);
         const Built built = build(binner_, view_, lights, view_.bounds());
         const int t = view_.view.tile_size(), width = picture_.size.width;
-        Difference d;
+        double lost = 0, squares = 0;
         for (std::size_t i = 0; i < truth_.size(); ++i) {
             const int tile =
                 surface_.pixel[i] / width / t * view_.view.tiles_x() + surface_.pixel[i] % width / t;
@@ -78,12 +77,10 @@ public:
             for (const std::uint32_t id : built.ids.subspan(list.offset, list.count))
                 light += light_at(i, spots[id], intensity_[id]);
             const double less = static_cast<double>(truth_[i] - light) / white_;
-            d.lost += less, d.rmse += less * less;
+            lost += less, squares += less * less;
         }
-        d.lost /= static_cast<double>(truth_.size()), d.rmse /= static_cast<double>(truth_.size());
-        d.rmse_restored = std::sqrt(std::max(d.rmse - d.lost * d.lost, 0.0));
-        d.rmse = std::sqrt(d.rmse);
-        return d;
+        lost /= static_cast<double>(truth_.size()), squares /= static_cast<double>(truth_.size());
+        return {std::sqrt(squares), std::sqrt(std::max(squares - lost * lost, 0.0))};
     }
 
 private:

@@ -3,8 +3,9 @@
 // any number of light sets.
 #pragma once
 
-#include "dice.hpp"
 #include "sets.hpp"
+
+#include <dice.hpp>
 
 #include <lightbin/spot.hpp>
 
@@ -320,7 +321,3 @@ inline BenchScene car_park() {
 }
 
 }  // namespace scenes
-
-inline std::vector<BenchScene> spot_scenes() {
-    return {scenes::street_lamps(), scenes::stage(), scenes::car_park()};
-}

@@ -5,10 +5,11 @@
 
 #include "boxes_sets.hpp"
 #include "console.hpp"
-#include "dice.hpp"
 #include "exact_pairs.hpp"
 #include "measure.hpp"
 #include "spots_sets.hpp"
+
+#include <dice.hpp>
 
 #include <lightbin/binner.hpp>
 #include <lightbin/box.hpp>

@@ -2,9 +2,10 @@
 // Generated sets of spots for the camera of sets.hpp, and lights of simpler kinds whose lists are as long.
 #pragma once
 
-#include "dice.hpp"
 #include "lens.hpp"
 #include "sets.hpp"
+
+#include <dice.hpp>
 
 #include <lightbin/spot.hpp>
 

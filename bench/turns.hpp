@@ -24,17 +24,6 @@ struct Turns {
             ratios.push_back(seconds[of][i] / seconds[to][i]);
         return percentile(ratios, 0.9) - percentile(ratios, 0.1);
     }
-    /// Returns these turns two by two. Of two turns each work is the first to read the frame in one, and finds it in the
-    /// cache in the other; where that makes a difference, a median of single turns would lie anywhere between the two.
-    Turns in_pairs() const {
-        Turns pairs = {{}, made, 2 * together};
-        for (const std::vector<double>& single : seconds) {
-            pairs.seconds.emplace_back();
-            for (std::size_t i = 1; i < single.size(); i += 2)
-                pairs.seconds.back().push_back(single[i - 1] + single[i]);
-        }
-        return pairs;
-    }
     /// Returns, for one frame, the median time of a work and the mean of what it returned.
     double seconds_a_frame(std::size_t of) const { return median(seconds[of]) / double(together); }
     double made_a_frame(std::size_t of) const {

@@ -13,11 +13,8 @@
 #include "console.hpp"
 #include "exact_pairs.hpp"
 #include "gpu/measure.hpp"
-#include "pool.hpp"
 #include "tiled_view.hpp"
 #include "turns.hpp"
-
-#include <sched.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,9 +100,8 @@ struct Builds {
     auto in_tiles(const Lights& lights) {
         return *tile_binner.bin(tiles.view, lights, {.bounds = tiles.bounds()});
     }
-    auto in_seen(const Lights& lights, const lightbin::Parallel& threads = {}) {
-        return *seen_binner.bin(clusters.view, lights, {.slices = slices, .bounds = clusters.bounds()},
-                                threads);
+    auto in_seen(const Lights& lights) {
+        return *seen_binner.bin(clusters.view, lights, {.slices = slices, .bounds = clusters.bounds()});
     }
     auto in_all(const Lights& lights) { return *all_binner.bin(clusters.view, lights, {.slices = slices}); }
 };
@@ -153,15 +149,9 @@ struct Check {
 /// Our milliseconds; 0 is what was not measured.
 struct Row {
     Published his;
-    double tiles, clusters, all_cells, on_threads = 0, gpu_tiles = 0, gpu_all_cells = 0;
+    double tiles, clusters, all_cells, gpu_tiles = 0, gpu_all_cells = 0;
     double entries;  ///< of `clusters`, per light
 };
-
-/// std::thread::hardware_concurrency() counts those that taskset took away, too.
-std::size_t usable_cores() {
-    cpu_set_t cores;
-    return sched_getaffinity(0, sizeof cores, &cores) == 0 ? std::size_t(CPU_COUNT(&cores)) : 1;
-}
 
 class Measuring {
 public:
@@ -184,14 +174,10 @@ public:
         });
         if (checked) check_.add(builds_, frames[0].lights);
 
-        std::vector<Work<Frame>> works = {
+        const std::vector<Work<Frame>> works = {
             [&](const Frame& frame) { return builds_.in_tiles(frame.lights).ids().size(); },
             [&](const Frame& frame) { return builds_.in_seen(frame.lights).ids().size(); },
             [&](const Frame& frame) { return builds_.in_all(frame.lights).ids().size(); }};
-        if (threads_ > 1)
-            works.push_back([&](const Frame& frame) {
-                return builds_.in_seen(frame.lights, {threads_, pool_}).ids().size();
-            });
         const Turns turns = take_turns(frames, quick_ ? 0.1 : 1, works);
         const auto ms = [&](std::size_t work) { return 1e3 * turns.seconds_a_frame(work); };
         Row row = {.his = his,
@@ -199,7 +185,6 @@ public:
                    .clusters = ms(1),
                    .all_cells = ms(2),
                    .entries = turns.made_a_frame(1) / double(his.lights)};
-        if (threads_ > 1) row.on_threads = ms(3);
         if (gpu_ && (checked || !gpu_->is_software())) {
             const LightSource source = {"", 0, {{his_lens(), frames[0].lights, {}}}};
             row.gpu_tiles = on_gpu<tile_options>(source, 32, builds_.tiles.bounds());
@@ -209,8 +194,7 @@ public:
     }
 
     std::string machine() const {
-        return to_string(lightbin::machine_isa()) +
-               (threads_ > 1 ? text("; clusters also on %zu", threads_) : std::string()) +
+        return std::string(to_string(lightbin::machine_isa())) +
                (gpu_ && !gpu_->is_software() ? "; " + gpu_->name() : "");
     }
     bool right() const { return check_.wrong == 0 && on_gpu_.right(); }
@@ -239,8 +223,6 @@ private:
 
     bool quick_;
     Builds builds_;
-    std::size_t threads_ = usable_cores();
-    Pool pool_{threads_};
     std::optional<GpuDevice> gpu_;
     std::string gpu_said_;
     Check check_;
@@ -254,12 +236,11 @@ std::string cell(double ms) {
 
 std::vector<TableRow> table_of(const std::vector<Row>& rows) {
     std::vector<TableRow> table = {{"box", "lights", "his tiled", "his volume", "his BVH", "tiles",
-                                    "clusters", "all cells", "on threads", "GPU tiles", "GPU all cells",
-                                    "entries a light"}};
+                                    "clusters", "all cells", "GPU tiles", "GPU all cells", "entries a light"}};
     for (const Row& row : rows)
         table.push_back({row.his.grows ? "grows" : "same", std::to_string(row.his.lights),
                          cell(row.his.tiled), cell(row.his.volume), cell(row.his.bvh()), cell(row.tiles),
-                         cell(row.clusters), cell(row.all_cells), cell(row.on_threads), cell(row.gpu_tiles),
+                         cell(row.clusters), cell(row.all_cells), cell(row.gpu_tiles),
                          cell(row.gpu_all_cells), text("%.1f", row.entries)});
     return table;
 }

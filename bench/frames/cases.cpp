@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cases.hpp"
 
-#include "../dice.hpp"
+#include <dice.hpp>
 
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>

@@ -33,8 +33,6 @@ Format format_of(GLenum format) {
 
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
-    case GL_R8UI:
-        return 1;
     case GL_R16UI:
         return 2;
     case GL_R32UI:

@@ -56,8 +56,6 @@ public:
     /// Draws a view by every technique, after the reference picture, with these settings where a technique has none.
     std::vector<Row> run(const std::string& table, const Camera& camera,
                          const std::vector<Technique>& techniques, Settings wanted);
-    /// The picture of the last run, RGBA.
-    const std::vector<std::uint8_t>& reference() const { return reference_; }
 
 private:
     Row draw(const Technique& technique, const Camera& camera, Settings wanted, int timed_frames);

@@ -280,7 +280,7 @@ uniform usamplerBuffer footprints;  // in pixels, both ends included
 flat out int light;
 
 void main() {
-    uvec4 footprint = texelFetch(footprints, 2 * gl_InstanceID);
+    uvec4 footprint = texelFetch(footprints, gl_InstanceID);
     light = int(footprint.x);
     uvec2 low = uvec2(footprint.y & 0xffffu, footprint.y >> 16u);
     uvec2 high = uvec2(footprint.z & 0xffffu, footprint.z >> 16u) + 1u;

@@ -140,11 +140,8 @@ std::vector<LightFootprint> Stage::footprints(int tile_size) const {
                       lightbin::Parallel{});
     const lightbin::detail::FootprintArrays& of = projected.arrays();
     std::vector<LightFootprint> footprints;
-    for (std::uint32_t i = 0; i < projected.visible(); ++i) {
-        const lightbin::Sphere& light = spheres_[of.ids[i]];
-        footprints.push_back({of.ids[i], of.x0[i], of.y0[i], of.x1[i], of.y1[i], -light.z - light.radius,
-                              -light.z + light.radius});
-    }
+    for (std::uint32_t i = 0; i < projected.visible(); ++i)
+        footprints.push_back({of.ids[i], of.x0[i], of.y0[i], of.x1[i], of.y1[i]});
     return footprints;
 }
 

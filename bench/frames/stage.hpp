@@ -30,14 +30,13 @@ struct Pass {
 /// Returns whether OpenGL draws on the CPU, whose times say little about a GPU.
 bool is_software_renderer();
 
-/// The tiles that a light covers, first and last included, and its least and greatest view depth, as two uvec4.
+/// The tiles that a light covers, first and last included, as an uvec4.
 struct LightFootprint {
     std::uint32_t id;
     std::uint16_t x0, y0, x1, y1;
-    float nearest, farthest;
-    std::uint32_t unused[3] = {};
+    std::uint32_t unused = 0;
 };
-static_assert(sizeof(LightFootprint) == 32);
+static_assert(sizeof(LightFootprint) == 16);
 
 /// All functions throw std::runtime_error with one line if this OpenGL lacks what they need.
 class Stage {
@@ -66,7 +65,7 @@ public:
     lightbin::View view(int tile_size = 0) const;  ///< a tile size of 0 means the settings' tile size
     /// Returns the lights in view space, sorted by the depth where they begin: ids are then ranks in depth.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
-    /// Returns tiles and depths of the lights in view, by ascending id. A tile size of 0 means the settings' tile size.
+    /// Returns the tiles of the lights in view, by ascending id. A tile size of 0 means the settings' tile size.
     std::vector<LightFootprint> footprints(int tile_size = 0) const;
     /// Uploads the lights in this order, for lists of ranks in depth.
     void order_lights(std::span<const std::uint32_t> order);

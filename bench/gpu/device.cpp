@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "device.hpp"
 
-#include "../buffer_of.hpp"
-
 #include <gl_program.hpp>
 
 #include <stdexcept>
@@ -12,6 +10,12 @@ namespace {
 void check(const std::string& what) {
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
         throw std::runtime_error("OpenGL reports error " + std::to_string(error) + " at " + what);
+}
+
+std::string buffer_of(const lightbin::ShaderBinding& binding) {
+    std::string name = binding.name.substr(std::string("lightbin_").size());
+    if (name.ends_with("_block")) name.erase(name.rfind('_'));
+    return name;
 }
 
 }  // namespace

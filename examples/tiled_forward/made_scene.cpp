@@ -11,7 +11,7 @@ Scene make_scene(int light_count) {
     constexpr int blocks = 20;               // a side
     constexpr float pitch = 8, half = 2.6f;  // of a block, and half its width: the streets are what is left
     constexpr float edge = blocks * pitch / 2;
-    Dice dice;
+    Dice dice(2011);
     Scene scene;
     scene.name = "made scene";
 

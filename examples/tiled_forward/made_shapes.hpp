@@ -2,6 +2,7 @@
 // What the made scenes are built of.
 #pragma once
 
+#include "dice.hpp"
 #include "scene.hpp"
 
 #include <glm/gtc/constants.hpp>
@@ -9,21 +10,9 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
 namespace made {
-
-// The same numbers everywhere, which the standard distributions do not promise.
-class Dice {
-public:
-    float between(float low, float high) {
-        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
-    }
-
-private:
-    std::mt19937 engine_{2011};
-};
 
 inline void add_quad(std::vector<Vertex>& triangles, const std::array<glm::vec3, 4>& corners,
                      glm::vec3 normal, glm::vec3 colour) {

@@ -199,7 +199,7 @@ void add_shelter(Scene& scene, float side, float z) {
 }  // namespace
 
 Scene make_street() {
-    Dice dice;
+    Dice dice(2011);
     Scene scene;
     scene.name = "made street";
     add_paint(scene, {-120, last - 60}, {120, 60}, 0, glm::vec3(0.14f));

@@ -76,10 +76,8 @@ json scene_json() {
     for (const Camera& camera : scene.cameras)
         cameras.push_back(camera_json(camera));
     return {{"name", scene.name},
-            {"kind", stage.kind()},
             {"notes", scene.notes},
             {"lights", scene.lights.size()},
-            {"suns", scene.suns.size()},
             {"has_spots", stage.has_spots()},
             {"cameras", cameras},
             {"centre", few_floats(low + (high - low) / 2.0f)},

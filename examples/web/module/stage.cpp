@@ -16,22 +16,21 @@ constexpr float cutoff = 0.05f;  // lux at which a file's light without a range 
 }  // namespace
 
 void Stage::make(const std::string& kind, int lights) {
-    if (kind == "street") return show(make_street(), kind);
+    if (kind == "street") return show(make_street());
     if (kind != "city") throw std::runtime_error("there is no made scene '" + kind + "'");
     if (lights < 1 || lights > most_lights)
         throw std::runtime_error("the city has 1 to " + std::to_string(most_lights) + " lights, not " +
                                  std::to_string(lights));
-    show(make_scene(lights), kind);
+    show(make_scene(lights));
 }
 
 void Stage::open(std::span<const unsigned char> bytes, const std::string& name) {
-    show(read_glb(bytes, name, cutoff), "file");
+    show(read_glb(bytes, name, cutoff));
 }
 
-void Stage::show(Scene scene, const std::string& kind) {
+void Stage::show(Scene scene) {
     scene_ = std::move(scene);
     scene_.boxes.clear();  // the shaders of the page know lights only
-    kind_ = kind;
     has_spots_ = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                              [](const Light& light) { return light.spot; });
 }

@@ -35,7 +35,6 @@ public:
     void open(std::span<const unsigned char> bytes, const std::string& name);
 
     const Scene& scene() const { return scene_; }
-    const std::string& kind() const { return kind_; }  // `city`, `street` or `file`
     bool has_spots() const { return has_spots_; }
 
     // aspect  the picture's width over its height
@@ -47,10 +46,9 @@ public:
     const PlacedLights& place(const glm::dmat4& camera_to_world, double seconds, int dropped_light);
 
 private:
-    void show(Scene scene, const std::string& kind);
+    void show(Scene scene);
 
     Scene scene_;
-    std::string kind_;
     bool has_spots_ = false;
     std::vector<Light> moved_;
     PlacedLights placed_;
