@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Draws what frames.csv has of cameras' paths, a panel a scene and number of lights: times (as Tiled Shading, Figure 2) to
-# frames_times.png, and light evaluations (Figure 3) to frames_evaluations.png. run.sh makes frames_paths of frames.csv, lines
-# of PANEL,FRAME,TECHNIQUE,MILLION_EVALUATIONS,MS, with _ for spaces.
+# frames_times.png, and light evaluations (Figure 3) to frames_evaluations.png. run.sh makes frames_paths of frames.csv,
+# lines of PANEL,FRAME,TECHNIQUE,MILLION_EVALUATIONS,MS, with _ for spaces.
 set datafile separator ","
 colours = "#999999 #d95f02 #e6a23c #1b6ca8 #49a0d8 #2a9d4e #8cc63f #111111 #7b3fa0 #c9529c"
 curves = "Forward_with_every_light TiledForward TiledForward-PreZ TiledForward-PreZ_both TiledForward-PreZ_box \
