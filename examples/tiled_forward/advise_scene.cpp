@@ -151,7 +151,7 @@ std::string code(const AdvicePlan& plan, const AdvisedView& seen, const Scene& s
     lines += std::string(plan.masks ? "auto masks" : "auto grid") + " = binner.bin(*view, lights" + inputs +
              ");\n";
     const std::string read =
-        plan.masks ? (sliced ? slicing + ", " : "") + ".masks = true"
+        plan.masks ? (sliced ? slicing + ",\n                                        " : "") + ".masks = true"
                    : ".format = decltype(binner)::list_format" +
                          (sliced ? ",\n                                        " + slicing : "");
     return lines + "auto shader = lightbin::shader_snippet({" + read +
