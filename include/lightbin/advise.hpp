@@ -112,7 +112,7 @@ inline std::string to_string(const Advice& advice);
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
 /// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
-/// lights moved slightly sideways each time but the first, and takes the shortest time. It keeps no memory.
+/// image moved slightly sideways each time but the first, and takes the shortest time. It keeps no memory.
 ///
 /// lights  as for Binner::bin()
 /// bounds  Z bounds of the view's own tiles, from which bounds of larger tiles are merged. Without bounds, the

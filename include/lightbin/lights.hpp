@@ -54,37 +54,6 @@ template <class Light, class ToLight> struct Lights {
         }
         return nullptr;
     }
-
-    /// Returns the sphere, in view space, of an array element.
-    Sphere view_sphere(const Light& light) const {
-        const Sphere sphere = made(light);
-        return to_view ? (*to_view)(sphere) : sphere;
-    }
-
-    /// Returns the Sphere, Spot or Box, in view space, of an array element. The axis of a Spot, and the centre and the
-    /// half axes of a Box, are rounded to nearest, not outward.
-    auto view_light(const Light& light) const {
-        if constexpr (kind == LightKind::box) {
-            const Box box = made(light);
-            if (!to_view) return box;
-            const Sphere ball = (*to_view)(Sphere{box.x, box.y, box.z, box.radius}),
-                         centre = (*to_view)(Sphere{box.box_x, box.box_y, box.box_z, 0});
-            Box moved = {ball.x, ball.y, ball.z, ball.radius, centre.x, centre.y, centre.z, {}, box.taper};
-            for (int i = 0; i < 3; ++i) {
-                const Sphere image = to_view->direction(box.half_axes[i][0], box.half_axes[i][1], box.half_axes[i][2]);
-                std::memcpy(moved.half_axes[i], &image, sizeof moved.half_axes[i]);
-            }
-            return moved;
-        } else if constexpr (kind == LightKind::spot) {
-            const Spot spot = made(light);
-            if (!to_view) return spot;
-            const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
-            const Sphere axis = to_view->direction(spot.axis_x, spot.axis_y, spot.axis_z);
-            return Spot{ball.x, ball.y, ball.z, ball.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
-        } else {
-            return view_sphere(light);
-        }
-    }
 };
 
 }  // namespace detail

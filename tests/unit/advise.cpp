@@ -489,6 +489,16 @@ TEST_CASE("any input") {
     CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
 }
 
+TEST_CASE("the image that plans are timed with is moved sideways") {
+    for (const View& view : {test::view({1000, 700}, 16), test::view({640, 48}, 8)}) {
+        const ViewPoint point = view.view_point({100, 20, 5});
+        const ImagePoint moved = detail::moved_aside(view, 1.0 / 32).image_point(point);
+        CHECK(moved.x == doctest::Approx(100 + view.viewport().width / 32.0));
+        CHECK(moved.y == doctest::Approx(20));
+        CHECK(moved.depth == doctest::Approx(5));
+    }
+}
+
 TEST_CASE("lights in any form, on any instruction set, count alike") {
     const View view = test::view({1000, 700}, 16);
     const auto lights = test::random_lights(1000, 8);

@@ -202,7 +202,7 @@ TEST_CASE("spheres that are moved in doubles hold what the rounding of their pla
         const glm::dmat4 turn = glm::rotate(glm::dmat4(1), angle, glm::dvec3(0, 0, 1));
         const std::vector<Placed<Sphere>> lights = {{{eye + 1 + small(random), 0, 0}, {0, 0, 0, 0}}};
         const auto world = world_space(lights, turn, {eye, 0, 0}, [](const auto& light) { return light; });
-        const Sphere image = world.view_sphere(lights[0]);
+        const Sphere image = (*world.to_view)(world.made(lights[0]));
         const long double x = static_cast<long double>(lights[0].origin.x) - static_cast<long double>(eye),
                           dx = static_cast<long double>(turn[0].x) * x - static_cast<long double>(image.x),
                           dy = static_cast<long double>(turn[0].y) * x - static_cast<long double>(image.y),

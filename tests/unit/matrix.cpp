@@ -114,14 +114,14 @@ TEST_CASE("a view matrix is the same in any type") {
     const std::vector<Sphere> lights = {{lamp.x, lamp.y, lamp.z, 1}};
     each_type(matrix, [&](const auto& as_it_is) {
         const auto world = world_space(lights, as_it_is);
-        const Sphere sphere = world.view_sphere(lights[0]);
+        const Sphere sphere = (*world.to_view)(lights[0]);
         CHECK(sphere.x == doctest::Approx(moved.x));
         CHECK(sphere.y == doctest::Approx(moved.y));
         CHECK(sphere.z == doctest::Approx(moved.z));
     });
     Eigen::Affine3d affine = Eigen::Affine3d::Identity();
     affine.translation() = Eigen::Vector3d(5, 6, 7);
-    CHECK(world_space(lights, affine).view_sphere(lights[0]).y == doctest::Approx(6.5));
+    CHECK((*world_space(lights, affine).to_view)(lights[0]).y == doctest::Approx(6.5));
 }
 
 TEST_CASE("a view matrix that is transposed, multiplied with a projection or not affine is refused as that") {

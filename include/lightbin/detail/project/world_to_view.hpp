@@ -114,15 +114,6 @@ public:
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
 
-    /// Returns the image of a direction, rounded to nearest, as the centre of a Sphere. No translation is added.
-    Sphere direction(float x, float y, float z) const {
-        float image[3];
-        for (int row = 0; row < 3; ++row)
-            image[row] = static_cast<float>(m_[0][row] * static_cast<double>(x) + m_[1][row] * static_cast<double>(y) +
-                                            m_[2][row] * static_cast<double>(z));
-        return {image[0], image[1], image[2], 0};
-    }
-
 private:
     static Matrix without_translation(Matrix matrix) {
         for (int row = 0; row < 3; ++row)

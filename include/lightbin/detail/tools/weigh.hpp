@@ -92,21 +92,18 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
 
-/// Returns lights moved along x by `aside` or, in a perspective view, by `aside` times their z. The result refers to
-/// `lights`.
-template <class Light, class ToLight>
-auto moved_aside(const Lights<Light, ToLight>& lights, float aside, bool orthographic) {
-    return view_space(lights.array, [=, &lights](const Light& light) {
-        auto in_view = lights.view_light(light);
-        const float by = aside * (orthographic ? 1 : in_view.z);
-        in_view.x += by;
-        if constexpr (Lights<Light, ToLight>::kind == LightKind::box) in_view.box_x += by;
-        return in_view;
-    });
-}
-template <class First, class Rest>
-auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orthographic) {
-    return lights(moved_aside(joined.first, aside, orthographic), moved_aside(joined.rest, aside, orthographic));
+/// Returns a view whose image is moved sideways by a part of its width.
+inline View moved_aside(const View& view, double part) {
+    Matrix matrix = projection_of(view).matrix;
+    for (double(&column)[4] : matrix.columns)
+        column[0] += 2 * part * column[3];
+    const auto clip_depth = static_cast<ClipDepth>(projection_of(view).depth.zero_to_one);
+    const auto moved = View::from_projection(matrix, view.viewport(),
+                                             {.tile_size = view.tile_size(),
+                                              .clip_depth = clip_depth,
+                                              .origin = view.origin(),
+                                              .reversed_z = view.reversed_z()});
+    return moved ? *moved : view;
 }
 
 /// Measures each of the options `measured` on grids of several tile sizes.
@@ -132,10 +129,11 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
     // shortest so far. A plan's first call also counts how often pixels evaluate a light of its lists, or look at a word
     // of its masks.
-    const auto build = [&](AdvicePlan& plan, const auto& moved, bool first) -> std::optional<Error> {
+    const auto build = [&](AdvicePlan& plan, double aside, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)
             ++grid;
+        const View moved = moved_aside(grid->view, aside);
         const bool binned = plan.slicing == Slicing::z_bins, clusters = plan.slicing == Slicing::clusters;
         const Slices& by = clusters ? slices.clusters : slices.z_bins;
         const double layers = plan.has_z_bounds() ? 1 : costs.overdraw;
@@ -149,7 +147,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
         };
         const auto build_masks = [&]() -> std::optional<Error> {
             const auto built = timed([&] {
-                return binned ? mask_binner.bin(grid->view, moved, by) : mask_binner.bin(grid->view, moved);
+                return binned ? mask_binner.bin(moved, lights, by) : mask_binner.bin(moved, lights);
             });
             if (!built) return built.error();
             if (!first) return std::nullopt;
@@ -166,8 +164,7 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             return std::nullopt;
         };
         const auto build_lists = [&]<Options options>(Binner<options>& binner) -> std::optional<Error> {
-            const auto built =
-                timed([&] { return binner.bin(grid->view, moved, inputs_for<options>(grid->bounds, by)); });
+            const auto built = timed([&] { return binner.bin(moved, lights, inputs_for<options>(grid->bounds, by)); });
             if (!built) return built.error();
             if (!first) return std::nullopt;
             const LightRanks& ranks = built->ranks();
@@ -205,19 +202,19 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
                                .slicing = options.slicing,
                                .tile_size = grid.view.tile_size(),
                                .build_ns = HUGE_VAL};
-            error = build(plan, lights, true);
+            error = build(plan, 0, true);
             plans.push_back(plan);
             if (error || options.depth_test || options.slicing == Slicing::clusters) return;
             plan.masks = true;  // of the same lights, so that pixels evaluate as many
             plan.build_ns = HUGE_VAL;
-            error = build(plan, lights, true);
+            error = build(plan, 0, true);
             plans.push_back(plan);
         });
     if (error) return *error;
 
     // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
-    // above, took longer because they allocated memory. In each turn the lights are moved sideways, by up to 1/32 of
-    // the image's width, because branch predictors learn a scene that is built repeatedly, which halves the time of
+    // above, took longer because they allocated memory. In each turn the image is moved sideways, by up to 1/32 of
+    // its width, because branch predictors learn a scene that is built repeatedly, which halves the time of
     // some plans. After two turns a plan's time is assumed to be at most twice its true time, so plans that would not
     // be the cheapest even at half their time are not built again.
     constexpr int turns = 8;
@@ -229,12 +226,10 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
             least = (std::min)(least, plan.total_ns);
         }
         if (turn == turns) return Advice(std::move(plans));
-        const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
-                                               camera_of(view).x.scale);
-        const auto moved = moved_aside(source, aside, view.orthographic());
+        const double aside = (2.0 * turn / (turns - 1) - 1) / 32;
         for (AdvicePlan& plan : plans)
             if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
-                static_cast<void>(build(plan, moved, false));
+                static_cast<void>(build(plan, aside, false));
     }
 }
 
