@@ -146,21 +146,17 @@ void for_each_array(const JoinedLights<First, Rest>& lights, const Visit& visit)
     if (rest) for_each_array(lights.rest, visit);
 }
 
-/// Returns the kind of the lights in the first of the arrays that a call was given.
-template <class Light, class ToLight> constexpr LightKind first_kind(const Lights<Light, ToLight>*) {
-    return Lights<Light, ToLight>::kind;
-}
-template <class First, class Rest> constexpr LightKind first_kind(const JoinedLights<First, Rest>*) {
-    return First::kind;
-}
+/// The kind of the lights in the first of the arrays that a call was given.
+template <class Given> inline constexpr LightKind first_kind = Given::kind;
+template <class First, class Rest> inline constexpr LightKind first_kind<JoinedLights<First, Rest>> = First::kind;
 
 /// Returns an argument of lights() as Lights that refer to its array. A temporary array is refused by a compile error.
 template <class Range> auto lasting_lights(Range&& lights) {
     using Given = std::remove_cvref_t<decltype(as_lights(lights))>;
-    static_assert(std::is_lvalue_reference_v<Range> || std::is_same_v<Given, std::remove_cvref_t<Range>> ||
-                      std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
-                  "lightbin: these lights are gone after the expression: give the array a name that lives on");
-    return Given(as_lights(lights));
+    if constexpr (std::is_same_v<Given, std::remove_cvref_t<Range>>)
+        return Given(lights);
+    else
+        return view_space(static_cast<Range&&>(lights));
 }
 
 }  // namespace detail
@@ -178,7 +174,7 @@ template <class First, class Second> auto lights(First&& first, Second&& second)
     auto other = detail::lasting_lights(static_cast<Second&&>(second));
     using One = decltype(one);
     using Other = decltype(other);
-    static_assert(detail::first_kind(static_cast<One*>(nullptr)) < detail::first_kind(static_cast<Other*>(nullptr)),
+    static_assert(detail::first_kind<One> < detail::first_kind<Other>,
                   "lightbin: lights() takes Spheres, Spots and Boxes in this order, and one array of each kind");
     return detail::JoinedLights<One, Other>{one, other};
 }
