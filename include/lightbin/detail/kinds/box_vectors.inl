@@ -3,8 +3,7 @@
 // Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
-#include <lightbin/detail/project/spheres.inl>
-#include <lightbin/detail/kinds/spot_vectors.inl>
+#include <lightbin/detail/kinds/spots.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {

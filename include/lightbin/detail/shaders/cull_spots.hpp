@@ -80,7 +80,7 @@ $spot $spot_at(uint at, vec4 ball) {
 }
 
 /// Adds `store_half_spaces`, which writes the four half spaces around a spot's cone, as store_planes() of
-/// kinds/spot_vectors.inl does, where they are derived.
+/// kinds/spots.inl does, where they are derived.
 ///
 /// Rounding, u = 2^-24. The Binner's axis is off by at most 18u of what exact arithmetic has, and this one by 32u: the
 /// root's sum 3u, the root 9u, the quotient 5u, two products 4u, and the transform, of which six operations of 2u each
