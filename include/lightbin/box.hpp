@@ -36,10 +36,6 @@ inline Box unlit_box(double radius) {
 /// Contains all points whose coordinates are floats: for shapes that reach farther.
 inline constexpr Box endless_box = {0, 0, 0, infinity, 0, 0, 0, {{FLT_MAX, 0, 0}, {0, FLT_MAX, 0}, {0, 0, FLT_MAX}}};
 
-inline double size_of(const Triple& v) {
-    return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
-}
-
 /// Returns a box with these half axes, and the sphere of its own corners.
 inline Box box_with_own_sphere(const Triple& centre, const Triple (&half_axes)[3], double taper) {
     const double size = size_of(centre) + size_of(half_axes[0]) + size_of(half_axes[1]) + size_of(half_axes[2]);
@@ -116,9 +112,7 @@ template <class Direction> Box half_sphere(const Sphere& light, const Direction&
     const double axis_length = detail::length(axis), radius = static_cast<double>(light.radius);
     if (!(axis_length > 0) || !detail::is_finite(axis_length)) return detail::unlit_box(radius);
     const detail::Triple along = detail::scaled(axis, 1 / axis_length);
-    const detail::Triple middle =
-        detail::sum({static_cast<double>(light.x), static_cast<double>(light.y), static_cast<double>(light.z)},
-                    detail::scaled(along, radius / 2));
+    const detail::Triple middle = detail::sum(detail::triple(light), detail::scaled(along, radius / 2));
     return clipped_sphere(light, detail::right_angled_box(middle, along, radius / 2, radius));
 }
 
@@ -148,7 +142,7 @@ template <class Point> Box tube_box(const Point& a, const Point& b, float radius
     const detail::Triple middle = detail::sum(detail::scaled(from, 0.5), detail::scaled(to, 0.5));
     if (!detail::finite(from) || !detail::finite(to) || !(radius >= 0)) return detail::unlit_box(reach);
     const detail::Triple along = distance > 0 ? detail::scaled(way, 1 / distance) : detail::Triple{1, 0, 0};
-    return clipped_sphere(detail::sphere_around_nearly(middle, 0.5 * distance + reach),
+    return clipped_sphere(detail::sphere_around(middle, 0.5 * distance + reach),
                           detail::right_angled_box(middle, along, 0.5 * distance + reach, reach));
 }
 

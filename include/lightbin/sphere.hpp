@@ -103,6 +103,11 @@ inline float light_window(float distance, float range) {
 
 namespace detail {
 
+/// Whether a light is switched off: see Sphere.
+inline bool is_off(double radius) {
+    return radius <= -1 && radius >= -1;
+}
+
 /// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes
 /// are copied, because access through a Sphere pointer would break the aliasing rules.
 inline Sphere load_sphere(const Sphere* from) {

@@ -24,11 +24,11 @@ template <> inline constexpr bool kernels_included<LightKind::spot> = true;
 ///         a bad Sphere
 template <class Point> Sphere tube_sphere(const Point& a, const Point& b, float radius) {
     const detail::Triple from = detail::triple(a), to = detail::triple(b);
-    if (!detail::finite(from) || !detail::finite(to) || !(radius >= 0)) return detail::unlit_sphere(static_cast<double>(radius));
-    const double half = 0.5 * detail::length({to.x - from.x, to.y - from.y, to.z - from.z});
-    return detail::sphere_around_nearly(
-        {0.5 * from.x + 0.5 * to.x, 0.5 * from.y + 0.5 * to.y, 0.5 * from.z + 0.5 * to.z},
-        half + static_cast<double>(radius));
+    if (!detail::finite(from) || !detail::finite(to) || !(radius >= 0))
+        return detail::unlit_sphere(static_cast<double>(radius));
+    const double distance = detail::length(detail::sum(to, detail::scaled(from, -1)));
+    return detail::sphere_around(detail::sum(detail::scaled(from, 0.5), detail::scaled(to, 0.5)),
+                                 0.5 * distance + static_cast<double>(radius));
 }
 
 /// Returns the least sphere that contains all points within `range` of a rectangle, such as an area light. Types,
@@ -41,9 +41,9 @@ Sphere rectangle_sphere(const Point& centre, const Point& half_x, const Point& h
     const detail::Triple c = detail::triple(centre), u = detail::triple(half_x), v = detail::triple(half_y);
     if (!detail::finite(c) || !detail::finite(u) || !detail::finite(v) || !(range >= 0))
         return detail::unlit_sphere(static_cast<double>(range));
-    const double half_diagonal = detail::max_of(detail::length({u.x + v.x, u.y + v.y, u.z + v.z}),
-                                                detail::length({u.x - v.x, u.y - v.y, u.z - v.z}));
-    return detail::sphere_around_nearly(c, half_diagonal + static_cast<double>(range));
+    const double half_diagonal = detail::max_of(detail::length(detail::sum(u, v)),
+                                                detail::length(detail::sum(u, detail::scaled(v, -1))));
+    return detail::sphere_around(c, half_diagonal + static_cast<double>(range));
 }
 
 }}  // namespace lightbin

@@ -249,7 +249,7 @@ TEST_CASE("a sphere of doubles becomes one of floats that holds it, and is no la
         };
         const glm::dvec4 light(number(-40, 40), number(-40, 40), number(-160, 127),
                                std::fabs(number(i % 3 == 0 ? -1000 : -30, i % 3 == 1 ? 126 : 30)));
-        const Sphere sphere = detail::sphere_around(light.x, light.y, light.z, light.w);
+        const Sphere sphere = detail::sphere_around({light.x, light.y, light.z}, light.w);
         // The point of one sphere farthest from the other's centre, in long double, which has 11 more bits.
         const long double dx = static_cast<long double>(light.x) - static_cast<long double>(sphere.x),
                           dy = static_cast<long double>(light.y) - static_cast<long double>(sphere.y),
@@ -258,17 +258,19 @@ TEST_CASE("a sphere of doubles becomes one of floats that holds it, and is no la
                           reach = static_cast<long double>(light.w) + moved;
         CHECK_UNARY(static_cast<long double>(sphere.radius) >= reach * (1 - 0x1p-60L));
         CHECK_UNARY(static_cast<long double>(sphere.radius) <=
-                    (reach + moved) * (1 + 0x1p-22L) + static_cast<long double>(FLT_TRUE_MIN));
+                    (reach + moved) * (1 + 0x1p-22L) + std::abs(static_cast<long double>(light.x)) * 0x1p-50L +
+                        std::abs(static_cast<long double>(light.y)) * 0x1p-50L +
+                        std::abs(static_cast<long double>(light.z)) * 0x1p-50L + 0x1p-123L);
     }
 }
 
 TEST_CASE("doubles out of the floats' range light everything; those that are bad input stay bad") {
     const double nan = std::nan(""), infinite = HUGE_VAL;
     for (const glm::dvec4& s : {glm::dvec4(1e300, 0, 0, 1e301), glm::dvec4(0, 0, 0, 1e300), glm::dvec4(0, 0, 0, infinite)})
-        CHECK(detail::sphere_around(s.x, s.y, s.z, s.w).radius == HUGE_VALF);
+        CHECK(detail::sphere_around({s.x, s.y, s.z}, s.w).radius == HUGE_VALF);
     for (const glm::dvec4& s : {glm::dvec4(nan, 0, 0, 1), glm::dvec4(infinite, 0, 0, 1), glm::dvec4(0, 0, 0, nan),
                                 glm::dvec4(0, 0, 0, -1e-300)})
-        CHECK(detail::sphere_around(s.x, s.y, s.z, s.w).radius < 0);
+        CHECK(detail::sphere_around({s.x, s.y, s.z}, s.w).radius < 0);
 }
 
 // That these spheres hold the shapes, and are the least that do, is proven in tests/oracle/least_spheres.cpp.

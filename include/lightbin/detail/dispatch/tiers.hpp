@@ -6,7 +6,6 @@
 
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
 #include <lightbin/detail/vectors/avx2.hpp>
 #include <lightbin/detail/vectors/avx512.hpp>
 #include <lightbin/detail/vectors/scalar.hpp>

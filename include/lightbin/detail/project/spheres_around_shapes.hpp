@@ -1,16 +1,65 @@
 // SPDX-License-Identifier: MIT
-// Spheres around Spots and Boxes. They need no kernels, so that coverage of mixed lights is the same function in all
+// Float spheres, rounded outward, around Spots, Boxes and spheres of doubles. They need no kernels, so that coverage of mixed lights is the same function in all
 // units, whether or not these include spot.hpp and box.hpp.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/sphere.hpp>
 
 #include <initializer_list>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+/// Returns a Sphere that is in no list: switched off if this radius says so, else bad input, which is counted.
+inline Sphere unlit_sphere(double radius) {
+    return {0, 0, 0, is_off(radius) ? -1 : -infinity};
+}
+
+struct Triple {
+    double x, y, z;
+};
+
+template <class Point> Triple triple(const Point& p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+/// Returns the length of a vector, with a relative error of at most 2^-51 if no square underflows or overflows.
+inline double length(const Triple& v) {
+    return root_of(rounded(v.x * v.x) + rounded(v.y * v.y) + rounded(v.z * v.z));
+}
+inline double size_of(const Triple& v) {
+    return abs_of(v.x) + abs_of(v.y) + abs_of(v.z);
+}
+inline bool finite(const Triple& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
+
+inline Triple scaled(const Triple& v, double factor) {
+    return {rounded(v.x * factor), rounded(v.y * factor), rounded(v.z * factor)};
+}
+inline Triple sum(const Triple& a, const Triple& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+/// Returns a float sphere that contains a sphere whose centre and radius were computed in double with rounding errors:
+/// up to 2^-50 of the radius in the radius, and up to 2^-50 of the radius plus 2^-53 of each coordinate in the centre.
+/// The radius is enlarged by more than these, by 2^-124 for values that were flushed to zero, and by the distance that
+/// rounding to float moves the centre. A centre beyond the range of floats gives a sphere that covers everything.
+inline Sphere sphere_around(const Triple& centre, double radius) {
+    if (!finite(centre) || !(radius >= 0)) return unlit_sphere(radius);
+    constexpr double most = static_cast<double>(FLT_MAX);
+    if (abs_of(centre.x) > most || abs_of(centre.y) > most || abs_of(centre.z) > most) return {0, 0, 0, infinity};
+    const Sphere nearest = {static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z), 0};
+    const double enlarged = rounded(radius * (1 + 0x1p-48)) + rounded(size_of(centre) * 0x1p-52) + 0x1p-124,
+                 moved = size_of(sum(centre, scaled(triple(nearest), -1)));
+    return {nearest.x, nearest.y, nearest.z, float_above((enlarged + moved) * (1 + 0x1p-50))};
+}
+
+}  // namespace detail
 
 /// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
 /// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more,
@@ -34,22 +83,12 @@ inline Sphere bounding_sphere(const Spot& spot) {
     const bool narrow = 2 * cosine2 >= 1;
     const double along = narrow ? radius / (2 * cosine) : radius * cosine;
     const double step = along / axis_length;
-    const Sphere least =
-        detail::sphere_around_nearly({static_cast<double>(spot.x) + detail::rounded(step * axis.x),
-                                      static_cast<double>(spot.y) + detail::rounded(step * axis.y),
-                                      static_cast<double>(spot.z) + detail::rounded(step * axis.z)},
-                                     narrow ? along : radius * detail::root_of(1 - cosine2));
+    const Sphere least = detail::sphere_around(detail::sum(detail::triple(own), detail::scaled(axis, step)),
+                                               narrow ? along : radius * detail::root_of(1 - cosine2));
     return least.radius < own.radius ? least : own;
 }
 
 namespace detail {
-
-inline Triple scaled(const Triple& v, double factor) {
-    return {rounded(v.x * factor), rounded(v.y * factor), rounded(v.z * factor)};
-}
-inline Triple sum(const Triple& a, const Triple& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
 
 inline Triple half_axis(const Box& box, int i) {
     const float(&axis)[3] = box.half_axes[i];
@@ -78,7 +117,7 @@ inline Sphere sphere_of_corners(const Box& box) {
                          narrow = sum(scaled(along, -1 - shift), scaled(diagonal, rounded(side * taper)));
             radius = max_of(radius, max_of(length(wide), length(narrow)));
         }
-    return sphere_around_nearly(sum(centre, scaled(along, shift)), radius);
+    return sphere_around(sum(centre, scaled(along, shift)), radius);
 }
 
 }  // namespace detail
@@ -87,8 +126,7 @@ inline Sphere sphere_of_corners(const Box& box) {
 /// corners. A bad Box gives a bad Sphere, and a Box that is switched off a Sphere that is.
 inline Sphere bounding_sphere(const Box& box) {
     const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
-    const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);
-    if (!finite || !(own.radius >= 0) || !(corners.radius > 0))
+    if (!detail::finite(detail::triple(own)) || !(own.radius >= 0) || !(corners.radius > 0))
         return detail::unlit_sphere(static_cast<double>(own.radius));
     return corners.radius < own.radius ? corners : own;
 }

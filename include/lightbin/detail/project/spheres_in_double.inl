@@ -3,7 +3,6 @@
 // functions. It is the same function for every tier: few lights of a scene cross the near plane or are tiny or huge.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor
 #pragma once
-#include <lightbin/detail/project/sphere_around.hpp>
 #include <lightbin/detail/project/spheres.inl>
 #endif
 

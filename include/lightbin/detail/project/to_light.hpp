@@ -3,7 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/project/light_kind.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/sphere.hpp>
 
 #include <concepts>
 #include <span>
