@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Float spheres, rounded outward, around Spots, Boxes and spheres of doubles. They need no kernels, so that coverage of mixed lights is the same function in all
-// units, whether or not these include spot.hpp and box.hpp.
+// Float spheres, rounded outward, around Spots, Boxes and spheres of doubles. They need no kernels, so that coverage of
+// mixed lights is the same function in all units, whether or not these include spot.hpp and box.hpp.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
@@ -53,7 +53,8 @@ inline Sphere sphere_around(const Triple& centre, double radius) {
     if (!finite(centre) || !(radius >= 0)) return unlit_sphere(radius);
     constexpr double most = static_cast<double>(FLT_MAX);
     if (abs_of(centre.x) > most || abs_of(centre.y) > most || abs_of(centre.z) > most) return {0, 0, 0, infinity};
-    const Sphere nearest = {static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z), 0};
+    const Sphere nearest = {static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z),
+                            0};
     const double enlarged = rounded(radius * (1 + 0x1p-48)) + rounded(size_of(centre) * 0x1p-52) + 0x1p-124,
                  moved = size_of(sum(centre, scaled(triple(nearest), -1)));
     return {nearest.x, nearest.y, nearest.z, float_above((enlarged + moved) * (1 + 0x1p-50))};
