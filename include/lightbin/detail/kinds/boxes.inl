@@ -236,31 +236,23 @@ LIGHTBIN_INLINE auto move_boxes(const ViewLanes& view, const TransformLanes& tra
         ball[k] = given[k];
     box.taper = given[16];
     box.error = Floats{};
+    LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k) {
+        box.centre[k] = given[4 + k];
+        LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
+            box.half_axes[axis][k] = given[3 * axis + 7 + k];
+    }
     auto safe = less_equal(Floats{}, Floats{});  // a mask of all boxes
     if (transform.to_view != nullptr) {
         transform_spheres(transform, ball[0], ball[1], ball[2], ball[3]);
-        Floats from_origin[3], size = Floats{};
-        LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k) {
-            from_origin[k] = given[4 + k] - transform.origin[k];
-            size = size + abs(from_origin[k]);
-        }
-        safe = less_equal(size, transform.max_distance);
-        LIGHTBIN_UNROLL for (unsigned k = 7; k < 16; ++k)
-            size = size + abs(given[k]);
-        box.error = (mul(size, transform.error_rate) + transform.error_at_origin) * 2.0f;
-        LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
-            box.centre[row] = transformed_row(transform, row, from_origin[0], from_origin[1], from_origin[2]) +
-                              transform.origin_image[row];
-            LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
-                box.half_axes[axis][row] = transformed_row(transform, row, given[3 * axis + 7], given[3 * axis + 8],
-                                                           given[3 * axis + 9]);
-        }
-    } else {
-        LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
-            box.centre[row] = given[4 + row];
-            LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
-                box.half_axes[axis][row] = given[3 * axis + 7 + row];
-        }
+        LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k)
+            box.centre[k] = box.centre[k] - transform.origin[k];
+        safe = less_equal(manhattan_length(box.centre), transform.max_distance);
+        box.error = (mul(size_of(box), transform.error_rate) + transform.error_at_origin) * 2.0f;
+        transform_vectors(transform, box.centre);
+        LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k)
+            box.centre[k] = box.centre[k] + transform.origin_image[k];
+        LIGHTBIN_UNROLL for (Floats(&h)[3] : box.half_axes)
+            transform_vectors(transform, h);
     }
     const Floats signs[] = {view.sign_x, view.sign_y, view.sign_z};
     LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {

@@ -63,9 +63,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         const Floats from_origin[] = {apex[0] - transform.origin[0], apex[1] - transform.origin[1],
                                       apex[2] - transform.origin[2]};
         safe = both(safe, less_equal(manhattan_length(from_origin), transform.max_distance));
-        const Floats given_axis[] = {axis[0], axis[1], axis[2]};
-        for (unsigned row = 0; row < 3; ++row)
-            axis[row] = transformed_row(transform, row, given_axis[0], given_axis[1], given_axis[2]);
+        transform_vectors(transform, axis);
         transform_spheres(transform, apex[0], apex[1], apex[2], spots.radius);
         // transform_spheres() stretched the radius and added its bound on the centre's error; this recovers the bound.
         const Floats centre_error = spots.radius - mul(given_radius, transform.stretch);

@@ -42,23 +42,27 @@ LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, un
     load_spheres(after, images[0], images[1], images[2], images[3]);
 }
 
-/// Returns one coordinate of the images of vectors: a row of the linear part times (x, y, z).
-inline Floats transformed_row(const TransformLanes& transform, unsigned row, Floats x, Floats y, Floats z) {
-    return mul(x, transform.columns[0][row]) + mul(y, transform.columns[1][row]) + mul(z, transform.columns[2][row]);
+/// Replaces vectors by their images: the transform's linear part times (v[0], v[1], v[2]).
+LIGHTBIN_INLINE void transform_vectors(const TransformLanes& transform, Floats (&v)[3]) {
+    const Floats x = v[0], y = v[1], z = v[2];
+    LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row)
+        v[row] = mul(x, transform.columns[0][row]) + mul(y, transform.columns[1][row]) +
+                 mul(z, transform.columns[2][row]);
 }
 
 /// Transforms a vector of spheres. Always inlined, because a call would pass the vectors through memory.
 LIGHTBIN_INLINE void transform_spheres(const TransformLanes& transform, Floats& x, Floats& y, Floats& z,
                                        Floats& radius) {
-    const Floats dx = x - transform.origin[0], dy = y - transform.origin[1], dz = z - transform.origin[2];
-    const Floats distance = abs(dx) + abs(dy) + abs(dz);
+    Floats place[] = {x - transform.origin[0], y - transform.origin[1], z - transform.origin[2]};
+    const Floats distance = abs(place[0]) + abs(place[1]) + abs(place[2]);
     const auto float_safe =
         both(less_equal(distance, transform.max_distance),
              both(less_equal(broadcast(float_safe_min), radius), less_equal(radius, broadcast(float_safe_max))));
     const Floats given[] = {x, y, z, radius};
-    x = transformed_row(transform, 0, dx, dy, dz) + transform.origin_image[0];
-    y = transformed_row(transform, 1, dx, dy, dz) + transform.origin_image[1];
-    z = transformed_row(transform, 2, dx, dy, dz) + transform.origin_image[2];
+    transform_vectors(transform, place);
+    x = place[0] + transform.origin_image[0];
+    y = place[1] + transform.origin_image[1];
+    z = place[2] + transform.origin_image[2];
     radius = mul(radius, transform.stretch) + (mul(distance, transform.error_rate) + transform.error_at_origin);
     const unsigned fallback = ~movemask(float_safe) & static_cast<unsigned>(every_lane);
     if (fallback == 0) return;
