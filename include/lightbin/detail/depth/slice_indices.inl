@@ -44,8 +44,11 @@ inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const 
             nearest = load_floats(out.nearest + i);
             farthest = load_floats(out.farthest + i);
         } else {
+            Sphere listed[lanes];
+            LIGHTBIN_UNROLL for (std::uint32_t lane = 0; lane < lanes; ++lane)
+                listed[lane] = load_sphere(lights.view_lights.spheres + ids[i + lane]);
             Floats x, y, z, radius;
-            load_listed_spheres(lights.view_lights.spheres, ids + i, x, y, z, radius);
+            load_spheres(listed, x, y, z, radius);
             z = z * broadcast(z_sign);
             nearest = z - radius;
             farthest = z + radius;

@@ -29,7 +29,7 @@
 //   not_zero                       the mask of the bytes that are not 0
 //   keep_where(bytes, condition)   the bytes, but 0 where the byte of `condition` is 0
 //   coordinates(from, more, begin) min(from[i] + more - begin, 255) of `byte_lanes` 16-bit numbers; 0 where negative
-//   compress_store(mask, from, to) stores the chosen bytes, or 32-bit ids, side by side, then meaningless elements
+//   compress_store(mask, from, to) stores the chosen bytes side by side, then meaningless elements
 // A tier overloads the functions of common.inl for which it has a faster way.
 
 // clang-format off: in this order

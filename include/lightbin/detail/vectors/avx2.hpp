@@ -17,37 +17,25 @@ LIGHTBIN_AVX2_BEGIN
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx2 {
 
 using FloatRegister = __m256;
+using IntRegister = __m256i;
 inline constexpr std::uint32_t lanes = 8;
 
-inline __m256 load_each_fourth(const char* from, std::size_t stride) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(reinterpret_cast<const float*>(from))),
-                                _mm_loadu_ps(reinterpret_cast<const float*>(from + 4 * stride)), 1);
+inline __m256 load_each_fourth(const Sphere* from) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(&from->x)), _mm_loadu_ps(&from[4].x), 1);
 }
-inline void store_each_fourth(char* to, std::size_t stride, __m256 pair) {
-    _mm_storeu_ps(reinterpret_cast<float*>(to), _mm256_castps256_ps128(pair));
-    _mm_storeu_ps(reinterpret_cast<float*>(to + 4 * stride), _mm256_extractf128_ps(pair, 1));
+inline void store_each_fourth(Sphere* to, __m256 pair) {
+    _mm_storeu_ps(&to->x, _mm256_castps256_ps128(pair));
+    _mm_storeu_ps(&to[4].x, _mm256_extractf128_ps(pair, 1));
 }
 
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LT_OQ)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LE_OQ)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
+#define LIGHTBIN_INT(name) _mm256_##name
+#define LIGHTBIN_BITS(name) _mm256_##name##_si256
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
-    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
-}
-inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
-}
-
-inline Floats ascending_bits(Floats values) {
-    const __m256i bits = _mm256_castps_si256(values);
-    return _mm256_cvtepi32_ps(_mm256_xor_si256(bits, _mm256_srli_epi32(_mm256_srai_epi32(bits, 31), 1)));
-}
-inline void store_tiles(std::uint32_t* tiles, Floats values) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm256_cvttps_epi32(values));
-}
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));
@@ -75,9 +63,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 
-struct Bytes {
-    __m256i v;
-};
 using ByteMask = std::uint32_t;
 inline constexpr std::uint32_t byte_lanes = 32;
 
@@ -86,18 +71,6 @@ inline Bytes load_bytes(const std::uint8_t* from) {
 }
 inline void store_bytes(std::uint8_t* to, Bytes bytes) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), bytes.v);
-}
-inline Bytes broadcast_byte(unsigned each) {
-    return {_mm256_set1_epi8(static_cast<char>(each))};
-}
-inline Bytes operator&(Bytes a, Bytes b) {
-    return {_mm256_and_si256(a.v, b.v)};
-}
-inline Bytes minimum(Bytes a, Bytes b) {
-    return {_mm256_min_epu8(a.v, b.v)};
-}
-inline Bytes subtract(Bytes a, Bytes b) {
-    return {_mm256_subs_epu8(a.v, b.v)};
 }
 inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
     const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
@@ -127,9 +100,6 @@ inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
         _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], indices));
         to += std::popcount(chosen & 0xff);
     }
-}
-inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
-    append_16(append_16(to, from, chosen & 0xffff), from + 16, chosen >> 16);
 }
 
 }}}}  // namespace lightbin::detail

@@ -31,19 +31,18 @@ LIGHTBIN_AVX512_BEGIN
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
 
 using FloatRegister = __m512;
+using IntRegister = __m512i;
 inline constexpr std::uint32_t lanes = 16;
 
-inline __m512 load_each_fourth(const char* from, std::size_t stride) {
-    const auto vec4 = [=](std::size_t i) { return _mm_loadu_ps(reinterpret_cast<const float*>(from + i * stride)); };
-    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
-    return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
+inline __m512 load_each_fourth(const Sphere* from) {
+    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_loadu_ps(&from->x)), _mm_loadu_ps(&from[4].x), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(two, _mm_loadu_ps(&from[8].x), 2), _mm_loadu_ps(&from[12].x), 3);
 }
-inline void store_each_fourth(char* to, std::size_t stride, __m512 quads) {
-    const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
-    _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));
-    _mm_storeu_ps(vec4(4), _mm512_extractf32x4_ps(quads, 1));
-    _mm_storeu_ps(vec4(8), _mm512_extractf32x4_ps(quads, 2));
-    _mm_storeu_ps(vec4(12), _mm512_extractf32x4_ps(quads, 3));
+inline void store_each_fourth(Sphere* to, __m512 quads) {
+    _mm_storeu_ps(&to->x, _mm512_castps512_ps128(quads));
+    _mm_storeu_ps(&to[4].x, _mm512_extractf32x4_ps(quads, 1));
+    _mm_storeu_ps(&to[8].x, _mm512_extractf32x4_ps(quads, 2));
+    _mm_storeu_ps(&to[12].x, _mm512_extractf32x4_ps(quads, 3));
 }
 
 #define LIGHTBIN_LESS(a, b) _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ)
@@ -51,60 +50,14 @@ inline void store_each_fourth(char* to, std::size_t stride, __m512 quads) {
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
 #define LIGHTBIN_MASK __mmask16
 #define LIGHTBIN_OP(name) _mm512_##name##_ps
+#define LIGHTBIN_INT(name) _mm512_##name
+#define LIGHTBIN_BITS(name) _mm512_##name##_si512
 #include <lightbin/detail/vectors/x86_vector.inl>
 
 inline unsigned movemask(unsigned mask) {
     return mask;
 }
 
-/// Transposes a vector as 4x4 floats: lane 4 i + j becomes lane 4 j + i.
-inline Floats swap_quarters(Floats a) {
-    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
-}
-
-inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
-    x = _mm512_loadu_ps(&spheres[0].x);
-    y = _mm512_loadu_ps(&spheres[4].x);
-    z = _mm512_loadu_ps(&spheres[8].x);
-    radius = _mm512_loadu_ps(&spheres[12].x);
-    transpose(x, y, z, radius);
-    x = swap_quarters(x);
-    y = swap_quarters(y);
-    z = swap_quarters(z);
-    radius = swap_quarters(radius);
-}
-inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
-    transpose(a, b, c, d);
-    _mm512_storeu_ps(&spheres[0].x, a);
-    _mm512_storeu_ps(&spheres[4].x, b);
-    _mm512_storeu_ps(&spheres[8].x, c);
-    _mm512_storeu_ps(&spheres[12].x, d);
-}
-
-/// Does what load_listed_spheres() of common.inl does, without a copy of the spheres in memory: to load a vector of
-/// what was just stored in smaller parts, the processor would wait for the stores.
-template <class Index>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, Floats& x, Floats& y, Floats& z,
-                         Floats& radius) {
-    const auto one = [=](std::uint32_t i) { return _mm_loadu_ps(&spheres[indices[i]].x); };
-    const auto four = [=](std::uint32_t i) {
-        const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(one(i)), one(i + 4), 1);
-        return _mm512_insertf32x4(_mm512_insertf32x4(two, one(i + 8), 2), one(i + 12), 3);
-    };
-    x = four(0);
-    y = four(1);
-    z = four(2);
-    radius = four(3);
-    transpose(x, y, z, radius);
-}
-inline Floats ascending_bits(Floats values) {
-    const __m512i bits = _mm512_castps_si512(values);
-    return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
-}
-inline void store_tiles(std::uint32_t* tiles, Floats values) {
-    _mm512_storeu_si512(tiles, _mm512_cvttps_epi32(values));
-}
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
     for (unsigned bit = 0; bit < 8; ++bit)
@@ -132,9 +85,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return out + std::popcount(mask);
 }
 
-struct Bytes {
-    __m512i v;
-};
 using ByteMask = std::uint64_t;
 inline constexpr std::uint32_t byte_lanes = 64;
 
@@ -143,18 +93,6 @@ inline Bytes load_bytes(const std::uint8_t* from) {
 }
 inline void store_bytes(std::uint8_t* to, Bytes bytes) {
     _mm512_storeu_si512(to, bytes.v);
-}
-inline Bytes broadcast_byte(unsigned each) {
-    return {_mm512_set1_epi8(static_cast<char>(each))};
-}
-inline Bytes operator&(Bytes a, Bytes b) {
-    return {_mm512_and_si512(a.v, b.v)};
-}
-inline Bytes minimum(Bytes a, Bytes b) {
-    return {_mm512_min_epu8(a.v, b.v)};
-}
-inline Bytes subtract(Bytes a, Bytes b) {
-    return {_mm512_subs_epu8(a.v, b.v)};
 }
 inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
     const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
@@ -175,10 +113,6 @@ inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begi
 }
 inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
     _mm512_storeu_si512(to, _mm512_mask_compress_epi8(fresh_zeros(), chosen, from.v));
-}
-inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
-    for (unsigned i = 0; i < 64; i += 16)
-        to = append_16(to, from + i, static_cast<unsigned>(chosen >> i & 0xffff));
 }
 
 }}}}  // namespace lightbin::detail

@@ -54,11 +54,12 @@ template <class Reals> void cross(const Reals (&a)[3], const Reals (&b)[3], Real
         to[i] = mul(a[(i + 1) % 3], b[(i + 2) % 3]) - mul(a[(i + 2) % 3], b[(i + 1) % 3]);
 }
 
-/// Loads as four vectors the vec4s, one for each lane, that begin `stride` bytes apart, the first one at `from`.
+/// Loads as four vectors the vec4s, one for each lane, that begin `stride` bytes apart, the first one at `from`. Where
+/// the loop is unrolled, nothing is copied.
 template <class Reals>
 void load_vec4s(const void* from, std::size_t stride, Reals& x, Reals& y, Reals& z, Reals& w) {
     Sphere vec4s[lanes];
-    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+    LIGHTBIN_UNROLL for (std::uint32_t lane = 0; lane < lanes; ++lane)
         std::memcpy(vec4s + lane, static_cast<const char*>(from) + lane * stride, sizeof *vec4s);
     load_spheres(vec4s, x, y, z, w);
 }
@@ -66,8 +67,14 @@ void load_vec4s(const void* from, std::size_t stride, Reals& x, Reals& y, Reals&
 template <class Reals> void store_vec4s(void* to, std::size_t stride, Reals x, Reals y, Reals z, Reals w) {
     Sphere vec4s[lanes];
     store_spheres(vec4s, x, y, z, w);
-    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+    LIGHTBIN_UNROLL for (std::uint32_t lane = 0; lane < lanes; ++lane)
         std::memcpy(static_cast<char*>(to) + lane * stride, vec4s + lane, sizeof *vec4s);
+}
+
+/// Stores the chosen ids, of `byte_lanes`, side by side, then meaningless elements.
+inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < byte_lanes; i += 16)
+        to = append_16(to, from + i, static_cast<unsigned>(chosen >> i & 0xffff));
 }
 
 /// Returns where a whole vector of lights can be read: `from` or, if only `used` lights lie there, `padded`, to which
@@ -79,15 +86,6 @@ LIGHTBIN_INLINE const Light* whole_vector(const Light* from, std::uint32_t used,
     for (std::uint32_t lane = 0; lane < lanes; ++lane)
         std::memcpy(static_cast<void*>(padded + lane), from + (lane < used ? lane : 0), sizeof *padded);
     return padded;
-}
-
-/// Loads the spheres with the indices from `indices` on as four vectors.
-template <class Index, class Reals>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, Reals& x, Reals& y, Reals& z, Reals& radius) {
-    Sphere some[lanes];
-    for (std::uint32_t i = 0; i < lanes; ++i)
-        some[i] = load_sphere(spheres + indices[i]);
-    load_spheres(some, x, y, z, radius);
 }
 
 }}}}  // namespace lightbin::detail

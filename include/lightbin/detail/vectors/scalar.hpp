@@ -97,11 +97,8 @@ inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begi
     const unsigned coordinate = *from + more;
     return coordinate > begin ? static_cast<Bytes>(min_of(coordinate - begin, 255u)) : Bytes{0};
 }
-template <class T> void compress_store(ByteMask, T from, std::uint8_t* to) {
+inline void compress_store(ByteMask, unsigned from, std::uint8_t* to) {
     *to = static_cast<std::uint8_t>(from);
-}
-inline void compress_store(ByteMask, const std::uint32_t* from, std::uint32_t* to) {
-    *to = *from;
 }
 
 }}}}  // namespace lightbin::detail

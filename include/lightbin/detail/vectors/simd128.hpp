@@ -94,9 +94,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* i
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
-inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
-    append_16(to, from, chosen);
-}
 
 }}}}  // namespace lightbin::detail
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A class around an x86 vector register of floats, with the operators of numbers. A tier defines before it
-// FloatRegister, the compiler's type of register, and
+// Classes around x86 vector registers: Floats, with the operators of numbers, and Bytes. A tier defines before it
+// FloatRegister and IntRegister, the compiler's types of registers, and
 //
-//   LIGHTBIN_MASK      the type of masks, if they have one bit for each lane; else masks are registers
-//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot, unpacklo, unpackhi,
-//                      shuffle; if LIGHTBIN_MASK is not defined, also for and, or, movemask
-//   load_each_fourth   a register of the vec4 at an address and of each fourth one behind it, `stride` bytes apart each
-//   store_each_fourth  the reverse of load_each_fourth
+//   LIGHTBIN_MASK        the type of masks, if they have one bit for each lane; else masks are registers
+//   LIGHTBIN_OP(name)    the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot, unpacklo, unpackhi,
+//                        shuffle; if LIGHTBIN_MASK is not defined, also for and, or, movemask
+//   LIGHTBIN_BITS(name)  the intrinsic for and and xor of integers, and for castps
+//   LIGHTBIN_INT(name)   the intrinsic for a name that ends in the type of its integers, such as min_epu8
+//   load_each_fourth     a register of the sphere at an address and of each fourth one behind it
+//   store_each_fourth    the reverse of load_each_fourth
 //
 // and LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
 
@@ -92,25 +94,51 @@ inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
     c = LIGHTBIN_OP(shuffle)(high.v, high_after.v, 0x44);
     d = LIGHTBIN_OP(shuffle)(high.v, high_after.v, 0xee);
 }
-inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
-    const char* const bytes = static_cast<const char*>(from);
-    x = load_each_fourth(bytes, stride);
-    y = load_each_fourth(bytes + stride, stride);
-    z = load_each_fourth(bytes + 2 * stride, stride);
-    w = load_each_fourth(bytes + 3 * stride, stride);
-    transpose(x, y, z, w);
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
+    x = load_each_fourth(spheres);
+    y = load_each_fourth(spheres + 1);
+    z = load_each_fourth(spheres + 2);
+    radius = load_each_fourth(spheres + 3);
+    transpose(x, y, z, radius);
 }
-inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
-    char* const bytes = static_cast<char*>(to);
-    transpose(x, y, z, w);
-    store_each_fourth(bytes, stride, x);
-    store_each_fourth(bytes + stride, stride, y);
-    store_each_fourth(bytes + 2 * stride, stride, z);
-    store_each_fourth(bytes + 3 * stride, stride, w);
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    transpose(x, y, z, radius);
+    store_each_fourth(spheres, x);
+    store_each_fourth(spheres + 1, y);
+    store_each_fourth(spheres + 2, z);
+    store_each_fourth(spheres + 3, radius);
+}
+inline Floats ascending_bits(Floats values) {
+    const IntRegister bits = LIGHTBIN_BITS(castps)(values.v);
+    const IntRegister but_sign = LIGHTBIN_INT(srli_epi32)(LIGHTBIN_INT(srai_epi32)(bits, 31), 1);
+    return LIGHTBIN_INT(cvtepi32_ps)(LIGHTBIN_BITS(xor)(bits, but_sign));
+}
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    const IntRegister whole = LIGHTBIN_INT(cvttps_epi32)(values.v);
+    std::memcpy(tiles, &whole, sizeof whole);
+}
+
+struct Bytes {
+    IntRegister v;
+};
+
+inline Bytes broadcast_byte(unsigned each) {
+    return {LIGHTBIN_INT(set1_epi8)(static_cast<char>(each))};
+}
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {LIGHTBIN_BITS(and)(a.v, b.v)};
+}
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {LIGHTBIN_INT(min_epu8)(a.v, b.v)};
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {LIGHTBIN_INT(subs_epu8)(a.v, b.v)};
 }
 
 #undef LIGHTBIN_MASK
 #undef LIGHTBIN_OP
+#undef LIGHTBIN_INT
+#undef LIGHTBIN_BITS
 #undef LIGHTBIN_LESS
 #undef LIGHTBIN_LESS_EQUAL
 #undef LIGHTBIN_SELECT

@@ -2,37 +2,23 @@
 // The operations of the tier of 128-bit vectors in SSE4.1. Included by simd128.hpp, in its namespace.
 
 using FloatRegister = __m128;
+using IntRegister = __m128i;
 
-inline __m128 load_each_fourth(const char* from, std::size_t) {
-    return _mm_loadu_ps(reinterpret_cast<const float*>(from));
+inline __m128 load_each_fourth(const Sphere* from) {
+    return _mm_loadu_ps(&from->x);
 }
-inline void store_each_fourth(char* to, std::size_t, __m128 vec4) {
-    _mm_storeu_ps(reinterpret_cast<float*>(to), vec4);
+inline void store_each_fourth(Sphere* to, __m128 sphere) {
+    _mm_storeu_ps(&to->x, sphere);
 }
 
 #define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
 #define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
 #define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
 #define LIGHTBIN_OP(name) _mm_##name##_ps
+#define LIGHTBIN_INT(name) _mm_##name
+#define LIGHTBIN_BITS(name) _mm_##name##_si128
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
-    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
-}
-inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
-}
-inline Floats ascending_bits(Floats values) {
-    const __m128i bits = _mm_castps_si128(values);
-    return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
-}
-inline void store_tiles(std::uint32_t* tiles, Floats values) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm_cvttps_epi32(values));
-}
-
-struct Bytes {
-    __m128i v;
-};
 
 inline Bytes load_half(const void* from) {
     return {_mm_loadl_epi64(static_cast<const __m128i*>(from))};
@@ -42,18 +28,6 @@ inline void store_half(void* to, Bytes a) {
 }
 inline Bytes high_half(Bytes a) {
     return {_mm_unpackhi_epi64(a.v, a.v)};
-}
-inline Bytes broadcast_byte(unsigned byte) {
-    return {_mm_set1_epi8(static_cast<char>(byte))};
-}
-inline Bytes operator&(Bytes a, Bytes b) {
-    return {_mm_and_si128(a.v, b.v)};
-}
-inline Bytes minimum(Bytes a, Bytes b) {
-    return {_mm_min_epu8(a.v, b.v)};
-}
-inline Bytes subtract(Bytes a, Bytes b) {
-    return {_mm_subs_epu8(a.v, b.v)};
 }
 inline Bytes shuffle(Bytes table, Bytes indices) {
     return {_mm_shuffle_epi8(table.v, indices.v)};
