@@ -76,7 +76,7 @@ public:
         return met_from(nearest, farthest, buckets_.index_of(nearest), buckets_.index_of(farthest));
     }
 
-    /// Calls found(i, first, last) for each footprint i: its light's view depths meet the slices first..last.
+    /// Calls found(i, range) for each footprint i: its light's view depths meet the slices of the Range.
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
     /// lights, runs  FootprintArrays and ranges of indices in them; overwrites `widest_lanes` elements of lights.ids
@@ -89,16 +89,10 @@ public:
                 const std::uint32_t count = min_of(run.end - i, LightDepths::size);
                 LightDepths depths;
                 kernel(buckets_, z_sign, lights, lights.ids + i, count, depths);
-                for (std::uint32_t j = 0; j < count && margin > 0; ++j) {
-                    depths.nearest[j] = nearer(depths.nearest[j]);
-                    depths.farthest[j] = farther(depths.farthest[j]);
-                    depths.first_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.nearest[j]));
-                    depths.last_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[j]));
-                }
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    const Range met = met_from(depths.nearest[j], depths.farthest[j], depths.first_bucket[j],
-                                               depths.last_bucket[j]);
-                    found(i + j, met.first, met.last);
+                    const float nearest = depths.nearest[j], farthest = depths.farthest[j];
+                    found(i + j, margin > 0 ? met(nearest, farthest)
+                                            : met_from(nearest, farthest, depths.first_bucket[j], depths.last_bucket[j]));
                 }
             }
         }

@@ -34,10 +34,10 @@ public:
         std::uint32_t *const ends = ends_.reserve(bin_count_), *const sources = sources_.reserve(run_.end);
         std::uint32_t *const first_bins = first_bins_.reserve(size), *const last_bins = last_bins_.reserve(size);
         fill_items(ends, bin_count_, 0);
-        const auto found = [=](std::uint32_t i, std::uint32_t first, std::uint32_t last) {
-            first_bins[i] = first;
-            last_bins[i] = last;
-            ++ends[first];
+        const auto found = [=](std::uint32_t i, SliceTable::Range met) {
+            first_bins[i] = met.first;
+            last_bins[i] = met.last;
+            ++ends[met.first];
         };
         table_of(slices).find(kernel, camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
 

@@ -26,7 +26,7 @@ public:
         if (size > max_count) return Error{ErrorCode::too_many_pairs, size, max_count};
         arrays_ = buffers_.reserve(size);
         arrays_.view_lights = lights.view_lights;
-        const SliceRange* met = met_.data();
+        const SliceTable::Range* met = met_.data();
         for (const FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
                 const std::uint64_t area =
@@ -54,10 +54,6 @@ public:
     }
 
 private:
-    /// The slices first..last that a light meets.
-    struct SliceRange {
-        std::uint32_t first, last;
-    };
     /// The footprints in one slice, and the number of tiles in their rectangles.
     struct SliceRun : FootprintRun {
         std::uint64_t area;
@@ -68,13 +64,13 @@ private:
     std::uint64_t find_slices(DepthBucketsKernel kernel, const View& view, const Footprints& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         fill_items(runs, run_count_ + 1, {});
-        SliceRange* met = met_.reserve(footprints.visible());
-        const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
-            *met++ = {first, last};
+        SliceTable::Range* met = met_.reserve(footprints.visible());
+        const auto found = [=](std::uint32_t, SliceTable::Range range) mutable {
+            *met++ = range;
             // A difference array of the number of lights per slice, whose prefix sums are taken below. Its unsigned
             // elements wrap, and the sums come out right.
-            ++runs[first].end;
-            --runs[last + 1].end;
+            ++runs[range.first].end;
+            --runs[range.last + 1].end;
         };
         table_->find(kernel, camera_of(view).z_sign, footprints.arrays(), footprints.runs(), found);
         std::uint64_t size = 0;
@@ -103,7 +99,7 @@ private:
     }
 
     const SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
-    Buffer<SliceRange> met_;             ///< for each footprint, the slices that its light meets
+    Buffer<SliceTable::Range> met_;      ///< for each footprint, the slices that its light meets
     /// Each slice's run of footprints, and one element more: find_slices() first makes a difference array of them.
     Buffer<SliceRun> runs_;
     FootprintBuffers buffers_;
