@@ -29,14 +29,12 @@ struct Scratch {
     Buffer<std::uint32_t> corners;  ///< a difference array over tiles: its prefix sums are their numbers of lights
 
     // Memory for BandLists, the lists of the lights in bands; a band is a row of blocks of 8x8 tiles.
-    /// The indices 0, 1, 2 ... of footprints, which lists have in place of ids until depths are tested.
-    Buffer<std::uint32_t> light_indices;
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;     ///< ids of lights; during depth tests, indices of footprints
+    Buffer<std::uint32_t> list_ids;     ///< the lights' FootprintArrays::ids
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in

@@ -46,10 +46,10 @@ template <class Light> struct TestedLights {
 ///
 /// slab           SlabCells, the boxes around the block's cells in a depth slice, which spheres are tested against; or
 ///                NoSlab
-/// indices        the lights' indices in the footprint arrays
+/// ids            the lights' ids in FootprintArrays
 /// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
 template <LightKind kind, class Slab>
-void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab, const std::uint32_t* indices,
+void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab, const std::uint32_t* ids,
                     const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, std::uint64_t* met) {
     constexpr bool by_slab = std::is_same_v<Slab, SlabCells>;
     const ViewLights lights = job.lights.view_lights;
@@ -66,7 +66,7 @@ void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab
     [[maybe_unused]] TestedLights<TestedShape<ViewSpot>> spots;
     [[maybe_unused]] TestedLights<TestedShape<ViewBox>> boxes;
     for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t id = job.lights.light_ids[indices[j]];
+        const std::uint32_t id = job.lights.light_of(ids[j]);
         const LightKind own_kind = kind == LightKind::mixed ? lights.kind_of(id) : kind;
         met[j] = 0;
         if (own_kind == LightKind::sphere) {
@@ -111,25 +111,24 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
 }
 
 /// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
-/// `top`. Removes lights that are in none of its tiles from the list, and replaces the others' indices by ids.
+/// `top`. Removes lights that are in none of its tiles from the list.
 template <LightKind kind, class Slab>
 void mask_lights(const BinJob& job, Scratch& scratch, const Slab& slab, unsigned x, unsigned top, BlockList& list) {
     BlockCells cells;
     arrange_cells(job, x, top, cells);
     const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                        *const rows = scratch.list_rows.data() + list.begin;
-    std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
+    std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
     std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{widest_vector});
     std::uint32_t kept = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
         std::uint64_t met[64];
-        meet_64_lights<kind>(job, cells, slab, indices + begin, columns + begin, rows + begin, count, met);
+        meet_64_lights<kind>(job, cells, slab, ids + begin, columns + begin, rows + begin, count, met);
         for (std::uint32_t i = begin; i < begin + count; ++i) {
-            const std::uint32_t light = indices[i];
             const std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101} &
                                         met[i - begin] & cells.drawn;
-            indices[kept] = job.lights.ids[light];
+            ids[kept] = ids[i];
             masks[kept] = tiles;
             kept += tiles != 0;
         }
@@ -137,7 +136,9 @@ void mask_lights(const BinJob& job, Scratch& scratch, const Slab& slab, unsigned
     list.count = kept;
 }
 
-/// Finds in which tiles of a block each of its lights is listed, by the depth test. lists.inl declares it.
+/// Finds the tiles in which the lights of a list are listed if there is a depth test, for the block that begins at tile
+/// column 8 x and tile row `top`: removes from the list the lights that meet no cell, and fills the table of
+/// Scratch::row_columns_of() with the tiles of the others.
 template <Tested tested, LightKind kind>
 void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                        BlockList& list) {

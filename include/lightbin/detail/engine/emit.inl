@@ -128,6 +128,43 @@ LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std:
     return out;
 }
 
+/// Removes from the table of Scratch::row_columns_of() the tiles whose bit in `drawn` is not set.
+inline void keep_drawn(Scratch& scratch, const BlockList& list, std::uint64_t drawn) {
+    std::uint8_t* at = scratch.row_columns_of(list);
+    for (unsigned row = 0; row < 8; ++row, drawn >>= 8)
+        for (std::uint32_t i = 0; i < list.padded_count(); i += 8, at += 8)
+            store_8_bytes(at, load_8_bytes(at) & (drawn & 0xff) * std::uint64_t{0x0101010101010101});
+}
+
+/// Lists the lights of the blocks of 8x8 tiles in the 8 rows from `top` on, and fills the table of
+/// Scratch::row_columns_of() with a bit for each tile that a light is in. Returns the lists, or null if all are empty.
+///
+/// slab   with Tested::slab, the boxes around the depth slice's cells, which lights are tested against
+/// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
+/// end    the end of the tile rows that the caller will ask for
+template <Tested tested, LightKind kind>
+const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
+                             unsigned top, unsigned end) {
+    const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
+    if (top >= bands.end) list_bands(job, scratch, top, end, bands);
+    BlockList* const lists = scratch.lists.reserve(width);
+    std::uint32_t used = 0;
+    if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
+    for (unsigned x = 0; x < width; ++x) {
+        BlockList& list = lists[x];
+        const std::uint64_t drawn = job.drawn != nullptr ? job.drawn[top / 8 * width + x] : ~std::uint64_t{0};
+        list = {used, drawn != 0 ? list_block(scratch, bands, (top - bands.begin) / 8, x, used) : 0};
+        if (list.count == 0) continue;
+        if constexpr (tested == Tested::nothing)
+            store_rectangles(scratch, list, [](Bytes columns, std::size_t) { return columns; });
+        else
+            find_tested_tiles<tested, kind>(job, scratch, slab, x, top, list);
+        if (list.count > 0 && ~drawn != 0) keep_drawn(scratch, list, drawn);
+        if (list.count > 0) used += list.padded_count();
+    }
+    return used == 0 ? nullptr : lists;
+}
+
 /// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
 /// writes the tiles' lists. Returns the number of list entries. May write up to `widest_vector` elements past them.
 ///

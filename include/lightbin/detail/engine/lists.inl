@@ -27,7 +27,7 @@ struct BandLists {
     std::size_t panels = 0, count = 0, capacity = 0;
     std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light's columns x0..x1-1 in its panel of 248 tile columns
     std::uint8_t* rows = nullptr;               ///< per light, a bit for each of the band's 8 tile rows it covers
-    std::uint32_t* ids = nullptr;               ///< lights' ids or, for depth tests, footprints' indices
+    std::uint32_t* ids = nullptr;
     std::uint32_t* sizes = nullptr;
 };
 
@@ -47,10 +47,7 @@ inline ByteMask first_bytes(std::size_t count) {
 }
 
 /// Appends up to a vector of the `count` lights from index i on to the lists of the bands (8 tile rows) that they meet.
-///
-/// ids  what is listed of each light: its id, or its index in the footprint arrays
-inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids, const BandLists& bands,
-                         std::uint32_t i, std::size_t count) {
+inline void add_to_bands(const FootprintArrays& lights, const BandLists& bands, std::uint32_t i, std::size_t count) {
     const BandLists to = bands;  // a local copy, so that compilers need not reload it after each store of bytes
     const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
     for (unsigned panel = 0; panel < to.panels; ++panel) {
@@ -69,17 +66,14 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
             compress_store(chosen, first_x, to.x0 + at);
             compress_store(chosen, end_x, to.x1 + at);
             compress_store(chosen, rows, to.rows + at);
-            compress_store(chosen, ids + i, to.ids + at);
+            compress_store(chosen, lights.ids + i, to.ids + at);
             to.sizes[list] += static_cast<std::uint32_t>(std::popcount(chosen));
         }
     }
 }
 
 /// Lists the lights of as many bands of 8 tile rows, from row `begin` on, as max_band_entries allows in one pass.
-///
-/// by_index  whether to list indices in the footprint arrays, for depth tests, rather than lights' ids
-template <bool by_index>
-void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
+inline void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;
     to.panels = (width + panel_blocks - 1) / panel_blocks;
     const std::uint64_t together = min_of<std::uint64_t>(
@@ -95,18 +89,9 @@ void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsigned en
     to.ids = scratch.band_ids.reserve(entries);
     to.sizes = scratch.band_sizes.reserve(to.count);
     fill_items(to.sizes, to.count, 0);
-    const std::uint32_t* ids = job.lights.ids;
-    if constexpr (by_index) {
-        const std::uint32_t last = job.runs.empty() ? 0 : job.runs.back().end;
-        std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{widest_vector});
-        for (const FootprintRun& run : job.runs)
-            for (std::uint32_t i = run.begin; i < run.end; ++i)
-                indices[i] = i;
-        ids = indices;
-    }
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; i += byte_lanes)
-            add_to_bands(job.lights, ids, to, i, run.end - i);
+            add_to_bands(job.lights, to, i, run.end - i);
 }
 
 /// Returns the sum of the sizes of a band's lists. A band is 8 tile rows; it has a list for each panel of 248 columns.
@@ -160,51 +145,6 @@ template <class Narrow> void store_rectangles(Scratch& scratch, const BlockList&
             const Bytes in_row = load_bytes(rows + i) & broadcast_byte(1u << row);
             store_bytes(to + i, keep_where(narrow(load_bytes(columns + i), row * padded + i), in_row));
         }
-}
-
-/// Finds the tiles in which the lights of a list are listed if there is a depth test, for the block that begins at tile
-/// column 8 x and tile row `top`: removes from the list the lights that meet no cell, and fills the table of
-/// Scratch::row_columns_of() with the tiles of the others.
-template <Tested tested, LightKind kind>
-void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
-                       BlockList& list);
-
-/// Removes from the table of Scratch::row_columns_of() the tiles whose bit in `drawn` is not set.
-inline void keep_drawn(Scratch& scratch, const BlockList& list, std::uint64_t drawn) {
-    std::uint8_t* at = scratch.row_columns_of(list);
-    for (unsigned row = 0; row < 8; ++row, drawn >>= 8)
-        for (std::uint32_t i = 0; i < list.padded_count(); i += 8, at += 8)
-            store_8_bytes(at, load_8_bytes(at) & (drawn & 0xff) * std::uint64_t{0x0101010101010101});
-}
-
-/// Lists the lights of the blocks of 8x8 tiles in the 8 rows from `top` on, and fills the table of
-/// Scratch::row_columns_of() with a bit for each tile that a light is in. Returns the lists, or null if all are empty.
-///
-/// slab   with Tested::slab, the boxes around the depth slice's cells, which lights are tested against
-/// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
-/// end    the end of the tile rows that the caller will ask for
-template <Tested tested, LightKind kind>
-const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
-                             unsigned top, unsigned end) {
-    const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
-    if (top >= bands.end)
-        list_bands<tested != Tested::nothing && !slab_alone<tested, kind>>(job, scratch, top, end, bands);
-    BlockList* const lists = scratch.lists.reserve(width);
-    std::uint32_t used = 0;
-    if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
-    for (unsigned x = 0; x < width; ++x) {
-        BlockList& list = lists[x];
-        const std::uint64_t drawn = job.drawn != nullptr ? job.drawn[top / 8 * width + x] : ~std::uint64_t{0};
-        list = {used, drawn != 0 ? list_block(scratch, bands, (top - bands.begin) / 8, x, used) : 0};
-        if (list.count == 0) continue;
-        if constexpr (tested == Tested::nothing)
-            store_rectangles(scratch, list, [](Bytes columns, std::size_t) { return columns; });
-        else
-            find_tested_tiles<tested, kind>(job, scratch, slab, x, top, list);
-        if (list.count > 0 && ~drawn != 0) keep_drawn(scratch, list, drawn);
-        if (list.count > 0) used += list.padded_count();
-    }
-    return used == 0 ? nullptr : lists;
 }
 
 }}}}  // namespace lightbin::detail

@@ -65,15 +65,17 @@ struct FootprintArrays {
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
 
-    /// For each footprint, the position of its light in the caller's arrays, by which view_lights is indexed. This is
-    /// `ids`, except with z-bins, where `ids` holds ranks, which are positions in order of depth.
-    const std::uint32_t* light_ids = nullptr;
+    /// With z-bins, the ids of the lights by rank: then `ids` holds ranks, which are positions in order of depth. Else
+    /// null.
+    const std::uint32_t* by_rank = nullptr;
     ViewLights view_lights = {};
+
+    /// Returns the light's position in the caller's arrays, by which view_lights is indexed, of an element of `ids`.
+    std::uint32_t light_of(std::uint32_t id) const { return by_rank != nullptr ? by_rank[id] : id; }
 
     /// Returns the arrays of the footprints (lights' tile rectangles) from `begin` on.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, light_ids + begin,
-                view_lights};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, by_rank, view_lights};
     }
 };
 
@@ -82,13 +84,11 @@ public:
     /// Returns arrays for `count` footprints and widest_vector elements more.
     FootprintArrays reserve(std::uint64_t count) {
         const std::uint64_t capacity = count + widest_vector;
-        std::uint32_t* const ids = ids_.reserve(capacity);
-        return {.ids = ids,
+        return {.ids = ids_.reserve(capacity),
                 .x0 = x0_.reserve(capacity),
                 .y0 = y0_.reserve(capacity),
                 .x1 = x1_.reserve(capacity),
-                .y1 = y1_.reserve(capacity),
-                .light_ids = ids};
+                .y1 = y1_.reserve(capacity)};
     }
 
 private:

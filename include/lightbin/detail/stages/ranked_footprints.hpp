@@ -76,7 +76,7 @@ private:
         gather(lights.y0, arrays_.y0);
         gather(lights.x1, arrays_.x1);
         gather(lights.y1, arrays_.y1);
-        arrays_.light_ids = order;
+        arrays_.by_rank = order;
         arrays_.view_lights = lights.view_lights;
     }
 
