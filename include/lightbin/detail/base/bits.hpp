@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
@@ -45,23 +44,6 @@ inline std::uint64_t transpose_bits(std::uint64_t x) {
     x ^= t ^ t << 14;
     t = (x ^ x >> 28) & 0x00000000f0f0f0f0;
     return x ^ t ^ t << 28;
-}
-
-/// Swaps the bytes of b in `mask` with the bytes of a that lie `distance` bits higher: a step of transpose_bytes().
-template <unsigned distance> void swap_bytes(std::uint64_t& a, std::uint64_t& b, std::uint64_t mask) {
-    const std::uint64_t t = (a >> distance ^ b) & mask;
-    a ^= t << distance;
-    b ^= t;
-}
-
-/// Transposes 8x8 bytes: byte j of word i becomes byte i of word j, by swapping halves, then quarters, then eighths.
-inline void transpose_bytes(std::uint64_t (&words)[8]) {
-    for (unsigned i = 0; i < 4; ++i)
-        swap_bytes<32>(words[i], words[i + 4], 0x00000000ffffffff);
-    for (unsigned i : {0u, 1u, 4u, 5u})
-        swap_bytes<16>(words[i], words[i + 2], 0x0000ffff0000ffff);
-    for (unsigned i = 0; i < 8; i += 2)
-        swap_bytes<8>(words[i], words[i + 1], 0x00ff00ff00ff00ff);
 }
 
 /// For each value of a byte, the positions of its set bits in ascending order, one in each byte of a word. As indices

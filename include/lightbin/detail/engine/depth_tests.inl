@@ -94,20 +94,15 @@ void meet_64_lights(const BinJob& job, const BlockCells& cells, const Slab& slab
 }
 
 /// Fills the table of Scratch::row_columns_of(), which has for each row of tiles a byte for each light, with a bit for
-/// each tile that it is listed in. Scratch::tile_masks has a word for each light, with a byte for each row, so the
-/// words of 8 lights at a time are transposed as 8x8 bytes.
+/// each tile that it is listed in, with the bytes of the words in Scratch::tile_masks.
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
-    std::uint64_t* const masks = scratch.tile_masks.data();
-    std::memset(masks + list.count, 0, widest_lanes * sizeof *masks);
     std::uint8_t* const row_columns = scratch.reserve_row_columns(list);
-    for (std::uint32_t i = 0; i < padded; i += 8) {
-        std::uint64_t rows[8];
-        std::memcpy(rows, masks + i, sizeof rows);
-        transpose_bytes(rows);
+    const std::uint64_t* const masks = scratch.tile_masks.data();
+    std::memset(row_columns, 0, std::size_t{8} * padded);
+    for (std::uint32_t i = 0; i < list.count; ++i)
         for (unsigned row = 0; row < 8; ++row)
-            store_8_bytes(row_columns + row * padded + i, rows[row]);
-    }
+            row_columns[row * padded + i] = static_cast<std::uint8_t>(masks[i] >> 8 * row);
 }
 
 /// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
