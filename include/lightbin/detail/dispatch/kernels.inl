@@ -19,7 +19,6 @@
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
 //   store_tiles                    coordinates of tiles, rounded down to whole numbers
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
-//   split_bits(bytes, words)       transposes 64 bytes to 8 words: bit i of word j is bit j of byte i
 //   append_16(out, ids, mask)      appends the ids, of 16, whose bit is set; returns the end; writes up to 16 more
 //   append_8(out, ids, mask)       as append_16(), but of 8 ids
 //   Bytes, ByteMask, byte_lanes    a vector of unsigned bytes; a mask with a bit for each; the number of bytes

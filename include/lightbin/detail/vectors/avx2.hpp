@@ -36,16 +36,6 @@ inline void store_each_fourth(Sphere* to, __m256 pair) {
 #define LIGHTBIN_BITS(name) _mm256_##name##_si256
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
-    __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));
-    for (int bit = 7; bit >= 0; --bit) {
-        words[bit] = static_cast<std::uint32_t>(_mm256_movemask_epi8(low)) |
-                     std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_epi8(high))} << 32;
-        low = _mm256_add_epi8(low, low);
-        high = _mm256_add_epi8(high, high);
-    }
-}
 
 /// Appends to `out` the ids, of eight, whose bit in `mask` is set. Returns the end; may write 8 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {

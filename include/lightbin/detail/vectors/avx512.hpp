@@ -58,11 +58,6 @@ inline unsigned movemask(unsigned mask) {
     return mask;
 }
 
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    const __m512i all_bytes = _mm512_loadu_si512(bytes);
-    for (unsigned bit = 0; bit < 8; ++bit)
-        words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
-}
 
 /// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on
 /// the old value of its destination register on Zen 5, so that each iteration of a loop would wait for the one before.

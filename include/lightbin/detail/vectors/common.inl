@@ -71,6 +71,15 @@ template <class Reals> void store_vec4s(void* to, std::size_t stride, Reals x, R
         std::memcpy(static_cast<char*>(to) + lane * stride, vec4s + lane, sizeof *vec4s);
 }
 
+/// Transposes 64 bytes to 8 words: bit i of word j is bit j of byte i.
+template <class Word> void split_bits(const std::uint8_t* bytes, Word* words) {
+    LIGHTBIN_UNROLL for (unsigned bit = 0; bit < 8; ++bit) {
+        words[bit] = 0;
+        LIGHTBIN_UNROLL for (unsigned i = 0; i < 64; i += byte_lanes)
+            words[bit] |= Word{not_zero(load_bytes(bytes + i) & broadcast_byte(1u << bit))} << i;
+    }
+}
+
 /// Stores the chosen ids, of `byte_lanes`, side by side, then meaningless elements.
 inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
     LIGHTBIN_UNROLL for (unsigned i = 0; i < byte_lanes; i += 16)

@@ -49,15 +49,3 @@ inline Bytes narrow(Bytes low, Bytes high) {
 inline Bytes narrow_ids(Bytes ids) {
     return {_mm_packus_epi32(ids.v, ids.v)};
 }
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    __m128i quarter[4];
-    for (int i = 0; i < 4; ++i)
-        quarter[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes) + i);
-    for (int bit = 7; bit >= 0; --bit) {
-        words[bit] = 0;
-        for (int i = 0; i < 4; ++i) {
-            words[bit] |= std::uint64_t{movemask(Bytes{quarter[i]})} << 16 * i;
-            quarter[i] = _mm_add_epi8(quarter[i], quarter[i]);
-        }
-    }
-}

@@ -103,15 +103,3 @@ inline Bytes narrow(Bytes low, Bytes high) {
 inline Bytes narrow_ids(Bytes ids) {
     return {wasm_u16x8_narrow_i32x4(ids.v, ids.v)};
 }
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    v128_t quarter[4];
-    for (int i = 0; i < 4; ++i)
-        quarter[i] = wasm_v128_load(bytes + 16 * i);
-    for (int bit = 7; bit >= 0; --bit) {
-        words[bit] = 0;
-        for (int i = 0; i < 4; ++i) {
-            words[bit] |= std::uint64_t{movemask(Bytes{quarter[i]})} << 16 * i;
-            quarter[i] = wasm_i8x16_shl(quarter[i], 1);
-        }
-    }
-}
