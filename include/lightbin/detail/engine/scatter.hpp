@@ -13,15 +13,14 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// index list, from which fill_rows() counts down. The first list begins at `offset`. Returns where the last one ends.
 ///
 /// The counts come from a difference array: each rectangle adds 1 at two of its corners and subtracts 1 at the other
-/// two, so that prefix sums along columns and rows give the number of rectangles over each tile. A second difference
-/// array counts the rectangles over each row: a row without any needs no sums.
+/// two, so that prefix sums along columns and rows give the number of rectangles over each tile.
 inline std::uint32_t count_rows(const BinJob& job, Scratch& scratch, unsigned begin, unsigned end,
                                 std::uint32_t offset) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1,
                       size = pitch * (end - begin + 1);
-    std::uint32_t *steps = scratch.corners.reserve(size + (end - begin + 1)), *row_steps = steps + size;
-    std::memset(steps, 0, (size + (end - begin + 1)) * sizeof *steps);
+    std::uint32_t* steps = scratch.corners.reserve(size);
+    std::memset(steps, 0, size * sizeof *steps);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
             const unsigned y0 = max_of<unsigned>(lights.y0[i], begin), y1 = min_of(lights.y1[i] + 1u, end);
@@ -33,17 +32,9 @@ inline std::uint32_t count_rows(const BinJob& job, Scratch& scratch, unsigned be
             --first[columns];
             --below[0];
             ++below[columns];
-            ++row_steps[y0 - begin];
-            --row_steps[y1 - begin];
         }
     ListRange* tiles = job.tiles + begin * width;
-    std::uint32_t in_row = 0;
     for (unsigned y = begin; y < end; ++y, steps += pitch, tiles += width) {
-        in_row += *row_steps++;
-        if (in_row == 0) {
-            fill_empty(tiles, width, offset);
-            continue;
-        }
         std::uint32_t count = 0, *const below = steps + pitch;
         for (std::size_t x = 0; x < width; ++x) {
             const std::uint32_t step = steps[x];
