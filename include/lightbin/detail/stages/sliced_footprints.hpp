@@ -31,12 +31,16 @@ public:
             for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
                 const std::uint64_t area =
                     (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
-                // Most lights meet one or two slices. These are written without a branch, which would be mispredicted.
-                const std::uint32_t more = met->first < met->last;
-                put(lights, i, area, met->first, 1);
-                put(lights, i, area * more, met->first + 1, more);
-                for (std::uint32_t slice = met->first + 2; slice <= met->last; ++slice)
-                    put(lights, i, area, slice, 1);
+                for (std::uint32_t slice = met->first; slice <= met->last; ++slice) {
+                    SliceRun& in_slice = runs_.data()[slice];
+                    const std::uint32_t to = in_slice.end++;
+                    in_slice.area += area;
+                    arrays_.ids[to] = lights.ids[i];
+                    arrays_.x0[to] = lights.x0[i];
+                    arrays_.y0[to] = lights.y0[i];
+                    arrays_.x1[to] = lights.x1[i];
+                    arrays_.y1[to] = lights.y1[i];
+                }
             }
         return {};
     }
@@ -59,8 +63,8 @@ private:
         std::uint64_t area;
     };
 
-    /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. One unused element
-    /// follows the footprints of each slice, as put() may write there. Returns the number of elements of each array.
+    /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. Returns the number
+    /// of elements of each array.
     std::uint64_t find_slices(DepthBucketsKernel kernel, const View& view, const Footprints& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         fill_items(runs, run_count_ + 1, {});
@@ -78,24 +82,9 @@ private:
         for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
             count += run->end;
             run->begin = run->end = static_cast<std::uint32_t>(size);
-            size += count + std::uint64_t{1};
+            size += count;
         }
         return size;
-    }
-
-    /// Appends footprint i, whose rectangle has `area` tiles, to a slice if `count` is 1. If `count` and `area` are 0,
-    /// it appends nothing, without a branch: what it writes, the slice's next footprint overwrites.
-    void put(const FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
-             std::uint32_t count) {
-        SliceRun& run = runs_.data()[slice];
-        const std::uint32_t to = run.end;
-        run.end += count;
-        run.area += area;
-        arrays_.ids[to] = lights.ids[i];
-        arrays_.x0[to] = lights.x0[i];
-        arrays_.y0[to] = lights.y0[i];
-        arrays_.x1[to] = lights.x1[i];
-        arrays_.y1[to] = lights.y1[i];
     }
 
     const SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
