@@ -68,17 +68,8 @@
 #define LIGHTBIN_UNROLL
 #endif
 
-// The file that implements lightbin.h has the code for all options, where others have the code for one or two. There,
-// LIGHTBIN_SMALL marks functions that are compiled for size, as they run seldom; LIGHTBIN_ONCE marks functions that run
-// once in a call of a binner, and LIGHTBIN_SHARED_PART what the kernels of several options have in common: both stand
-// once in that file. Elsewhere the shared parts are inlined, and the other two mean nothing.
-#if defined(LIGHTBIN_IMPLEMENTATION)
-#define LIGHTBIN_SHARED_PART LIGHTBIN_NOINLINE
-#define LIGHTBIN_ONCE LIGHTBIN_NOINLINE
-#else
-#define LIGHTBIN_SHARED_PART LIGHTBIN_INLINE
-#define LIGHTBIN_ONCE
-#endif
+// LIGHTBIN_SMALL marks functions that run seldom: in the file that implements lightbin.h, which has the code for all
+// options, they are compiled for size.
 #if defined(LIGHTBIN_IMPLEMENTATION) && defined(__GNUC__)
 #define LIGHTBIN_SMALL __attribute__((noinline, cold))
 #else

@@ -171,8 +171,8 @@ const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxe
 /// slab       the boxes around a depth slice's cells, if list_band reads them
 /// list_band  list_lights() for the options
 template <class Id, class ListLights>
-LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob& job, Scratch& scratch, const BinShare<Id>& share,
-                                                 const SlabBoxes& slab, ListLights list_band) {
+std::uint64_t bin_blocks_by(const BinJob& job, Scratch& scratch, const BinShare<Id>& share, const SlabBoxes& slab,
+                            ListLights list_band) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     ListRange* tiles = job.tiles + share.begin * std::size_t{tiles_x};
     Id* out = share.out;

@@ -51,8 +51,7 @@ public:
     /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere
     /// and of its bounding_sphere(). For a Box it is the intersection of the rectangles of its sphere and of its box.
     template <class Source>
-    LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
-                               Kept kept = Kept::nothing) {
+    void project(Isa isa, const View& view, const Source& source, const Parallel& parallel, Kept kept = Kept::nothing) {
         lights_ = light_count(source);
         const auto parts_of = [&](const auto& lights) { return parts_of_array(lights.array.size(), parallel); };
         run_count_ = 0;

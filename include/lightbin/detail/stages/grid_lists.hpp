@@ -45,10 +45,9 @@ public:
     /// sliced    with clusters SlicedFootprints, else not read
     /// parallel  Serial or Parallel
     template <class Sliced, class Threads>
-    LIGHTBIN_ONCE std::optional<Error> build(const How& how, Isa isa, const View& view, const FootprintSlice& all,
-                                             [[maybe_unused]] const Sliced& sliced, const ZBounds& bounds,
-                                             ChooseKernel<Id> choose, Buffer<Scratch>& scratch,
-                                             [[maybe_unused]] const Threads& parallel) {
+    std::optional<Error> build(const How& how, Isa isa, const View& view, const FootprintSlice& all,
+                               [[maybe_unused]] const Sliced& sliced, const ZBounds& bounds, ChooseKernel<Id> choose,
+                               Buffer<Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // there is no grid until the end of this function
         BinJob common = {};
         if (const auto error = prepare(how, view, bounds, common)) return error;

@@ -44,8 +44,8 @@ public:
     /// cap             the widest instruction set to use
     /// slices, bounds  null, and empty, if the options do not read them
     template <class Id, class Source, class Threads>
-    LIGHTBIN_ONCE Result<LightGrid<Id>> bin(const How& how, Isa cap, const View& view, const Source& source,
-                                            const Slices* slices, const ZBounds& bounds, const Threads& threads) {
+    Result<LightGrid<Id>> bin(const How& how, Isa cap, const View& view, const Source& source, const Slices* slices,
+                              const ZBounds& bounds, const Threads& threads) {
         const DefaultFloatEnvironment environment;
         const Isa isa = machine_isa(cap);
         if (const auto error = project(how, isa, view, source, slices, threads)) return *error;
@@ -69,8 +69,8 @@ public:
 private:
     /// Projects the lights to footprints and, with clusters or z-bins, orders the footprints by depth.
     template <class Source>
-    LIGHTBIN_ONCE std::optional<Error> project(const How& how, Isa isa, const View& view, const Source& source,
-                                               [[maybe_unused]] const Slices* slices, const Parallel& threads) {
+    std::optional<Error> project(const How& how, Isa isa, const View& view, const Source& source,
+                                 [[maybe_unused]] const Slices* slices, const Parallel& threads) {
         if (const auto error = refuse(source, how.is.ids == IdWidth::u16 ? 0x10000 : max_lights)) return error;
         scratch_.reserve(1, 1);
         const bool sliced = how.is.slicing != Slicing::none;
