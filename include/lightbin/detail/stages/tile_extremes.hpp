@@ -16,21 +16,6 @@ struct Extremes {
     }
 };
 
-/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. Each range goes to one of four
-/// Extremes in turn, so that the processor overlaps their minima and maxima, which do not depend on each other.
-inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
-    Extremes chains[4] = {so_far, so_far, so_far, so_far};
-    std::size_t i = 0;
-    for (; i + 4 <= count; i += 4)
-        for (std::size_t chain = 0; chain < 4; ++chain)
-            chains[chain].take(lower[i + chain], upper[i + chain]);
-    for (; i < count; ++i)
-        chains[0].take(lower[i], upper[i]);
-    for (std::size_t chain = 1; chain < 4; ++chain)
-        chains[0].take(chains[chain].lower, chains[chain].upper);
-    return chains[0];
-}
-
 /// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of
 /// samples to its extremes, as many columns as fit in a buffer on the stack; then each tile's columns are reduced.
 ///
@@ -46,16 +31,15 @@ void reduce_tile_row(Isa isa, const DepthRows& row, const TileSplit& split, std:
     for (int index = 0; index < split.count(); ++index) {
         Extremes tile;
         const std::size_t tile_end = static_cast<std::size_t>(split.first_pixel(index + 1)) * samples;
-        for (std::size_t column = static_cast<std::size_t>(split.first_pixel(index)) * samples; column < tile_end;) {
+        for (std::size_t column = static_cast<std::size_t>(split.first_pixel(index)) * samples; column < tile_end;
+             ++column) {
             if (column == end) {
                 begin = end;
                 end = min_of(begin + buffer_size, row.columns);
                 const DepthRows part = {row.samples + begin, row.pitch, row.rows, end - begin};
                 depth_kernel(isa, part.columns)(part, skipped, lower, upper);
             }
-            const std::size_t stop = min_of(tile_end, end);
-            tile = extremes(lower + (column - begin), upper + (column - begin), stop - column, tile);
-            column = stop;
+            tile.take(lower[column - begin], upper[column - begin]);
         }
         finish(static_cast<std::size_t>(index), tile);
     }
