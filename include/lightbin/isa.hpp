@@ -19,7 +19,7 @@ enum class Isa : std::uint8_t {
     scalar = 1,  ///< no vectors, one number at a time: runs on every machine
     simd128,  ///< vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly (-msimd128)
     avx2,
-    avx512,  ///< vectors of 512 bits, AVX-512 with VBMI2 and BITALG: Ice Lake, Zen 4 and later
+    avx512,  ///< vectors of 512 bits, AVX-512 with VBMI2: Ice Lake, Zen 4 and later
 };
 
 constexpr const char* to_string(Isa isa) {
@@ -58,7 +58,7 @@ inline Isa processor_isa() {
     const unsigned long long saved = has(leaf_1[2], {27, 28}) ? _xgetbv(0) : 0;         // OSXSAVE, AVX
     if ((saved & 0x06) != 0x06 || !has(leaf_7[1], {3, 5})) return Isa::simd128;         // BMI1, AVX2
     const bool avx512 = (saved & 0xe6) == 0xe6 && has(leaf_7[1], {8, 16, 17, 30, 31});  // BMI2, F, DQ, BW, VL
-    return avx512 && has(leaf_7[2], {1, 6, 12}) ? Isa::avx512 : Isa::avx2;              // VBMI, VBMI2, BITALG
+    return avx512 && has(leaf_7[2], {6}) ? Isa::avx512 : Isa::avx2;                     // VBMI2
 #else
     // The compiler's builtins execute CPUID once per program. In a virtual machine, CPUID takes 10 us and more.
     if (!__builtin_cpu_supports("ssse3") || !__builtin_cpu_supports("sse4.1") || !__builtin_cpu_supports("popcnt"))
@@ -66,8 +66,7 @@ inline Isa processor_isa() {
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi")) return Isa::simd128;
     const bool avx512 = __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("avx512f") &&
                         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
-                        __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512bitalg");
+                        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi2");
     return avx512 ? Isa::avx512 : Isa::avx2;
 #endif
 }

@@ -65,5 +65,4 @@ struct Tier {
 
 }}}}  // namespace lightbin::detail
 
-#undef LIGHTBIN_TIER_EMITS_SHORT
 #undef LIGHTBIN_TIER

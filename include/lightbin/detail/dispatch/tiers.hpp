@@ -45,7 +45,6 @@ LIGHTBIN_AVX2_BEGIN
 LIGHTBIN_AVX2_END
 
 LIGHTBIN_AVX512_BEGIN
-#include <lightbin/detail/engine/emit_short_avx512.inl>
 #define LIGHTBIN_TIER avx512
 #include <lightbin/detail/dispatch/kernels.inl>
 LIGHTBIN_AVX512_END

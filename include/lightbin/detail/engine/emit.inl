@@ -78,7 +78,6 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
     return out;
 }
 
-#if !defined(LIGHTBIN_TIER_EMITS_SHORT)
 /// emit_tiles() for a block of up to 8 lights.
 ///
 /// row_columns  for each light a byte with a bit for each tile that it is in
@@ -95,7 +94,6 @@ LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, st
     }
     return out;
 }
-#endif
 
 /// Appends the light ids of one row of tiles to the index list, and writes the tiles' ranges. Returns the list's end.
 ///

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The tier of 512-bit vectors, which hold sixteen lights: AVX-512 with the compress instructions of VBMI2, and BITALG,
-// which Ice Lake, Zen 4 and later processors have.
+// The tier of 512-bit vectors, which hold sixteen lights: AVX-512 with the compress instructions of VBMI2, which
+// Ice Lake, Zen 4 and later processors have.
 #pragma once
 
-#include <lightbin/detail/base/bits.hpp>
-#include <lightbin/sphere.hpp>
+#include <lightbin/detail/vectors/avx2.hpp>
 
 #if defined(LIGHTBIN_X86)
 
@@ -23,7 +22,7 @@
 #endif
 #define LIGHTBIN_AVX512_BEGIN    \
     LIGHTBIN_AVX512_WARNINGS_OFF \
-    LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")
+    LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi2,bmi,bmi2,popcnt")
 #define LIGHTBIN_AVX512_END LIGHTBIN_TARGET_END LIGHTBIN_AVX512_WARNINGS_ON
 
 LIGHTBIN_AVX512_BEGIN
@@ -59,6 +58,8 @@ inline unsigned movemask(unsigned mask) {
 }
 
 
+using avx2::append_8;  // which takes less time for few ids than a compress instruction does
+
 /// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on
 /// the old value of its destination register on Zen 5, so that each iteration of a loop would wait for the one before.
 inline __m512i fresh_zeros() {
@@ -67,16 +68,14 @@ inline __m512i fresh_zeros() {
     return zeros;
 }
 
-template <class Id> LIGHTBIN_INLINE void store_ids(Id* out, __m512i ids) {
-    if constexpr (sizeof(Id) == 4)
-        _mm512_storeu_si512(out, ids);
-    else
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
-}
-
 /// Appends to `out` the ids, of sixteen, whose bit in `mask` is set. Returns the end; may write 16 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
-    store_ids(out, _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids)));
+    const __m512i chosen =
+        _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids));
+    if constexpr (sizeof(Id) == 4)
+        _mm512_storeu_si512(out, chosen);
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(chosen));
     return out + std::popcount(mask);
 }
 
