@@ -37,12 +37,11 @@ template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<kind>(); });
 }
 
-/// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
+/// Returns the kernel that reduces rows of `columns` samples: the scalar one, if these do not fill a vector.
 inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
-    if (isa == Isa::scalar) return scalar::Tier::depth_kernel();
-    if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
-        return with_tier(isa, [](auto tier) { return tier.depth_kernel(); });
-    return depth_kernel(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
+    return with_tier(isa, [=](auto tier) {
+        return columns < tier.vector ? scalar::Tier::depth_kernel() : tier.depth_kernel();
+    });
 }
 
 }}}  // namespace lightbin::detail
