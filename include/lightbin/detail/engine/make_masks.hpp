@@ -37,20 +37,8 @@ void make_masks(const FootprintArrays& lights, std::span<const FootprintRun> run
             ++in_column;
             ++in_row;
         }
-    // Sums up several words of each mask at once, so that the sums stay in registers.
-    std::size_t word = 0;
-    const auto sum_up = [&]<std::size_t count>() {
-        std::uint32_t sums[count] = {};
-        for (std::uint32_t* mask = to + word; mask < to + end; mask += each)
-            for (std::size_t i = 0; i < count; ++i)
-                mask[i] = sums[i] ^= mask[i];
-        word += count;
-    };
-    while (word + 8 <= each)
-        sum_up.template operator()<8>();
-    if (word + 4 <= each) sum_up.template operator()<4>();
-    if (word + 2 <= each) sum_up.template operator()<2>();
-    if (word < each) sum_up.template operator()<1>();
+    for (std::uint32_t* word = to + each; word < to + end; ++word)
+        *word ^= *(word - each);
 }
 
 }}}  // namespace lightbin::detail
