@@ -37,9 +37,8 @@ inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Real
     const Reals q = mul(a, z) + mul(r, sqrt(mul(a, a) + e));
     const Reals outer = mul(q, per_e), inner = mul(a - r, a + r) / q;
     const auto negative = less(c, Reals{});
-    // Lights lie on either side of the view axis at random, which no branch predictor could guess.
-    low = select_unpredicted(negative, -outer, inner);
-    high = select_unpredicted(negative, -inner, outer);
+    low = select(negative, -outer, inner);
+    high = select(negative, -inner, outer);
 }
 
 /// Stores the first and the last tile, along an image axis, that the bounds low..high of each light touch, enlarged by

@@ -33,12 +33,6 @@ template <class Mask> inline Mask and_not(Mask a, Mask b) {
     return static_cast<Mask>(a & (a ^ b));
 }
 
-/// Returns a (mask set) or b, for masks that no branch predictor could guess: in the scalar tier branchless for floats.
-template <class Mask, class Reals>
-inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
-    return select(mask, a, b);
-}
-
 /// Returns a vector of floats, or a double, all of whose lanes are the number `each`, which float represents exactly.
 template <class Reals> Reals all(double each) {
     if constexpr (std::is_same_v<Reals, Floats>)

@@ -24,12 +24,6 @@ template <class Real> Real sqrt(Real a) {
 inline unsigned movemask(bool mask) {
     return mask;
 }
-// Selects a (mask set) or b by bit operations, without a branch. Indexing an array {b, a} would be simpler, but clang
-// 14, when vectorizing for WebAssembly, miscompiles that: it reads the array of another call.
-inline float select_unpredicted(bool mask, float a, float b) {
-    const std::uint32_t if_set = 0u - std::uint32_t{mask};
-    return bit_cast<float>((bit_cast<std::uint32_t>(a) & if_set) | (bit_cast<std::uint32_t>(b) & ~if_set));
-}
 inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, float& radius) {
     const Sphere sphere = load_sphere(spheres);
     x = sphere.x;
