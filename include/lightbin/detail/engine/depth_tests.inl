@@ -139,7 +139,7 @@ void find_tested_tiles(const BinJob& job, Scratch& scratch, const SlabBoxes& sla
                        BlockList& list) {
     if constexpr (slab_alone<tested, kind>) {
         store_met_boxes(job, scratch, SlabCells(slab, x, top), list);
-        const std::uint8_t* const met = scratch.met_boxes();
+        const std::uint8_t* const met = scratch.met_boxes.data();
         store_rectangles(scratch, list, [met](Bytes columns, std::size_t at) {
             return static_cast<Bytes>(columns & load_bytes(met + at));
         });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written
-// strictly in sequence, without counting, scattering or sorting. Included once per tier (instruction set).
+// Step 3 of binning, and what runs all steps: emits the lists of the tiles. Tiles are visited in row-major order, so the
+// index list is written strictly in sequence, without counting, scattering or sorting. Included once per tier
+// (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once
 #include <lightbin/detail/engine/depth_tests.inl>
@@ -147,7 +148,6 @@ const BlockList* list_lights(const BinJob& job, Scratch& scratch, const SlabBoxe
     if (top >= bands.end) list_bands(job, scratch, top, end, bands);
     BlockList* const lists = scratch.lists.reserve(width);
     std::uint32_t used = 0;
-    if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
     for (unsigned x = 0; x < width; ++x) {
         BlockList& list = lists[x];
         const std::uint64_t drawn = job.drawn != nullptr ? job.drawn[top / 8 * width + x] : ~std::uint64_t{0};

@@ -94,14 +94,6 @@ inline void list_bands(const BinJob& job, Scratch& scratch, unsigned begin, unsi
             add_to_bands(job.lights, to, i, run.end - i);
 }
 
-/// Returns the sum of the sizes of a band's lists. A band is 8 tile rows; it has a list for each panel of 248 columns.
-inline std::size_t band_size(const BandLists& bands, std::size_t band) {
-    std::size_t size = 0;
-    for (std::size_t panel = 0; panel < bands.panels; ++panel)
-        size += bands.sizes[band * bands.panels + panel];
-    return size;
-}
-
 /// Makes the list of the block at tile column 8 * x of a band, out of the list of its panel, 248 columns of the band.
 /// Stores lights from element `begin` of Scratch::list_ids, list_columns and list_rows on. Returns their number.
 inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::size_t band, unsigned x,

@@ -54,15 +54,14 @@ struct SlabCells {
 };
 
 /// Finds which boxes around a depth slice's cells each sphere of a block's list meets; the list has no other lights.
-/// Stores for each row of tiles a byte for each sphere, with a bit for each of the row's 8 boxes that it meets, in the
-/// memory of Scratch::tile_masks. Rows are list.padded_count() bytes apart. Builds of clusters of spheres take 1.3
-/// times as long with a 64-bit word for each light instead, as mask_lights() stores it.
+/// Stores in Scratch::met_boxes for each row of tiles a byte for each sphere, with a bit for each of the row's 8 boxes
+/// that it meets. Rows are list.padded_count() bytes apart. Builds of clusters of spheres take 1.3 times as long with a
+/// 64-bit word for each light instead, as mask_lights() stores it.
 inline void store_met_boxes(const BinJob& job, Scratch& scratch, const SlabCells& slab, const BlockList& list) {
     const SlabCells boxes = slab;  // a local copy, so that compilers need not reload it after each store
     const std::uint32_t padded = list.padded_count();
     const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
-    scratch.tile_masks.reserve(padded + std::uint64_t{widest_vector});
-    std::uint8_t* const met = scratch.met_boxes();
+    std::uint8_t* const met = scratch.met_boxes.reserve(std::uint64_t{8} * padded + widest_vector);
     for (std::uint32_t i = 0; i < list.count; ++i)
         boxes.meet(TestedLight(*job.camera, load_sphere(job.lights.view_lights.spheres + ids[i])),
                    [=](unsigned row, unsigned bits) { met[row * padded + i] = static_cast<std::uint8_t>(bits); });

@@ -17,7 +17,6 @@ inline unsigned movemask(decltype(Floats{} < Floats{}) mask) {
     return vaddvq_u32(vandq_u32(reinterpret_cast<uint32x4_t>(mask), vld1q_u32(each)));
 }
 
-
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
     const float32x4x4_t columns = vld4q_f32(&spheres->x);
     x = columns.val[0];
