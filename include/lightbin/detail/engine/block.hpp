@@ -38,7 +38,7 @@ struct Scratch {
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
-    Buffer<std::uint8_t> met_boxes;     ///< the same bits as bytes: for each row of tiles a byte for each light
+    Buffer<std::uint8_t> met_boxes;     ///< for each tile row and light of a list, a bit for each box that it meets
     Buffer<std::uint8_t> row_columns;   ///< for each light of a list and each tile row, a bit for each tile it is in
 
     // Copies that pick_row() makes of the lights in one row of tiles: their ids, and bytes with a bit for each tile.
