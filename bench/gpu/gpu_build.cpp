@@ -118,8 +118,8 @@ bool GpuBuild::draws(std::uint32_t slice, std::uint32_t x, std::uint32_t y) cons
         const std::uint32_t column = x + i % 8, row = y + i / 8;
         if (column >= c.tiles_x || row >= c.tiles_y) continue;
         const float low = bounds_.min[row * c.tiles_x + column], high = bounds_.max[row * c.tiles_x + column];
-        if (low <= high && low - std::abs(low) * c.slice_margin <= slab.high &&
-            slab.low <= high + std::abs(high) * c.slice_margin)
+        if (low <= high && low - std::abs(low) * c.depth_margin <= slab.high &&
+            slab.low <= high + std::abs(high) * c.depth_margin)
             return true;
     }
     return bounds_.min.empty();
