@@ -44,7 +44,7 @@ same all headers words -P "$assertion" -DLIGHTBIN_CORE_ONLY
 same all headers macros -dM
 same core core words -P "$assertion"
 same core core macros -dM
-for left_out in '' _SHADERS _REDUCE_SHADERS _CULL_SHADERS; do
+for left_out in '' _SHADERS _CULL_SHADERS; do
     same c c words -P "$assertion" -DLIGHTBIN_IMPLEMENTATION "-DLIGHTBIN_NO$left_out"
 done
 same c c words -P

@@ -141,8 +141,8 @@ Advice advised_in_slices_of(const Street& street, const AdviceCosts& costs) {
     WoundClock::build_ns = each_100;
     WoundClock::calls = 0;
     return checked(advise_slices<WoundClock>(street.view, street.lights,
-                                                     {.clusters = a_dozen, .z_bins = hundred},
-                                                     {.depths = depths, .size = street.size}, costs),
+                                             {.clusters = a_dozen, .z_bins = hundred},
+                                             {.depths = depths, .size = street.size}, costs),
                    costs);
 }
 
