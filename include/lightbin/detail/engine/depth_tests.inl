@@ -114,7 +114,7 @@ void mask_lights(const BinJob& job, Scratch& scratch, const Slab& slab, unsigned
     const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                        *const rows = scratch.list_rows.data() + list.begin;
     std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
-    std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{widest_vector});
+    std::uint64_t* const masks = scratch.tile_masks.reserve(list.count);
     std::uint32_t kept = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
