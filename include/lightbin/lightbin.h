@@ -642,8 +642,8 @@ typedef struct lightbin_snippet_options {
     uint32_t uniform_block_bytes; /* the device's limit for one block; 0: 16384 */
     int32_t slots_given;          /* 0: the slots are the bindings 0 to 5 of set 0 in the order below */
     lightbin_slot tiles, lists, grid, slices, bins, view;
-    /* How many views' lists lie one after another in the buffers, up to 512; 0: 1. To each offset of a view is added the
-     * number of ids of the views before it. */
+    /* How many views' lists lie one after another in the buffers, up to 512; 0: 1. To each offset of a view is added
+     * the number of ids of the views before it. */
     uint32_t views;
     int32_t masks;  /* read lightbin_masks::words, bound at `lists`, in place of lists and their format */
     int32_t columns_and_rows; /* for views of which numbers of tiles were given; tile_size is not read */

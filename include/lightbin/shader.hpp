@@ -187,8 +187,8 @@ inline ViewConstants view_constants(const View& view, float tolerance = 2) {
 ///
 /// Two checks find pixels where the set-up is wrong. lightbin_check_view tells whether the View projects `position`, in
 /// view space, into this pixel (within the tolerance of view_constants()) and not before its near plane.
-/// lightbin_for_each_missing loops over every id below `lights` that the pixel's list lacks, which is slow; no `else` can
-/// follow its body.
+/// lightbin_for_each_missing loops over every id below `lights` that the pixel's list lacks, which is slow; no `else`
+/// can follow its body.
 inline Result<ShaderText> shader_snippet(const SnippetOptions& options = {});
 
 }}  // namespace lightbin

@@ -42,7 +42,8 @@ lightbin_result write_constants(const lightbin_view* view, To* to, const Argumen
 
 /// Writes the array that make() returns of a view or slices to the caller's memory.
 template <auto make, class From, class To>
-lightbin_result write_array(const From* from, const char* from_name, To* to, std::size_t capacity, const char* to_name) {
+lightbin_result write_array(const From* from, const char* from_name, To* to, std::size_t capacity,
+                            const char* to_name) {
     return call_if(check_pointers({{from, from_name}}), [&] {
         const auto made = make(from->value);
         return write_items(made.data(), made.size(), to, capacity, to_name);

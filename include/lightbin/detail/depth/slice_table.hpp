@@ -91,8 +91,9 @@ public:
                 kernel(buckets_, z_sign, lights, lights.ids + i, count, depths);
                 for (std::uint32_t j = 0; j < count; ++j) {
                     const float nearest = depths.nearest[j], farthest = depths.farthest[j];
-                    found(i + j, margin > 0 ? met(nearest, farthest)
-                                            : met_from(nearest, farthest, depths.first_bucket[j], depths.last_bucket[j]));
+                    found(i + j, margin > 0
+                                     ? met(nearest, farthest)
+                                     : met_from(nearest, farthest, depths.first_bucket[j], depths.last_bucket[j]));
                 }
             }
         }

@@ -2,8 +2,8 @@
 // The kernels of one tier (instruction set). The source of a kernel is an .inl file of templates over the tier's vector
 // class. This file includes all kernels but those of spots and boxes, which shape_kernels.inl includes, and each after
 // the files whose functions it calls. tiers.hpp includes this file once for each tier, so that each kernel is compiled
-// in the tier's namespace. A kernel also has a member in Tier, at the end of this
-// file, and a function in kernels.hpp that returns it.
+// in the tier's namespace. A kernel also has a member in Tier, at the end of this file, and a function in kernels.hpp
+// that returns it.
 //
 // LIGHTBIN_TIER is the name of that namespace. In it, a file of detail/vectors defines
 //   lanes                          the number of floats in a vector

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of binning, and what runs all steps: emits the lists of the tiles. Tiles are visited in row-major order, so the
-// index list is written strictly in sequence, without counting, scattering or sorting. Included once per tier
+// Step 3 of binning, and what runs all steps: emits the lists of the tiles. Tiles are visited in row-major order, so
+// the index list is written strictly in sequence, without counting, scattering or sorting. Included once per tier
 // (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor, with the scalar tier
 #pragma once

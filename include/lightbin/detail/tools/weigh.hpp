@@ -127,8 +127,8 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     const auto for_each_binner = [&](auto visit) { std::apply([&](auto&... each) { (visit(each), ...); }, binners); };
     MaskBinner mask_binner;
     // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
-    // shortest so far. A plan's first call also counts how often pixels evaluate a light of its lists, or look at a word
-    // of its masks.
+    // shortest so far. A plan's first call also counts how often pixels evaluate a light of its lists, or look at a
+    // word of its masks.
     const auto build = [&](AdvicePlan& plan, double aside, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)

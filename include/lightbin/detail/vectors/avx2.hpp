@@ -36,7 +36,6 @@ inline void store_each_fourth(Sphere* to, __m256 pair) {
 #define LIGHTBIN_BITS(name) _mm256_##name##_si256
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-
 /// Appends to `out` the ids, of eight, whose bit in `mask` is set. Returns the end; may write 8 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m256i chosen = _mm256_permutevar8x32_epi32(

@@ -57,7 +57,6 @@ inline unsigned movemask(unsigned mask) {
     return mask;
 }
 
-
 using avx2::append_8;  // which takes less time for few ids than a compress instruction does
 
 /// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on

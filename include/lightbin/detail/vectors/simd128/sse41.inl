@@ -19,7 +19,6 @@ inline void store_each_fourth(Sphere* to, __m128 sphere) {
 #define LIGHTBIN_BITS(name) _mm_##name##_si128
 #include <lightbin/detail/vectors/x86_vector.inl>
 
-
 inline Bytes load_half(const void* from) {
     return {_mm_loadl_epi64(static_cast<const __m128i*>(from))};
 }
