@@ -7,7 +7,6 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
-
 using namespace lightbin;
 
 TEST_CASE("16-bit ids are the same ids") {

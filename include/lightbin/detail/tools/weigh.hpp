@@ -6,7 +6,6 @@
 #include <lightbin/binner.hpp>
 #include <lightbin/masks.hpp>
 
-#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <tuple>
