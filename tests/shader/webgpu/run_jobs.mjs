@@ -6,7 +6,6 @@ import { Buffer } from 'node:buffer';
 import { spawn } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
 import process from 'node:process';
-import { createInterface } from 'node:readline';
 
 async function find_gpu(module) {
     if (!module) return navigator.gpu;
@@ -224,6 +223,17 @@ function accepts(job, bytes) {
     return 2 * bytes.length === wanted.length && all.every(Boolean);
 }
 
+// Reads no further than lines are taken: Node's readline would keep gigabytes of jobs that wait.
+async function* lines_of(stream) {
+    let rest = '';
+    for await (const chunk of stream.setEncoding('utf8')) {
+        const lines = chunk.split('\n');
+        lines[0] = rest + lines[0];
+        rest = lines.pop();
+        yield* lines;
+    }
+}
+
 const places = process.argv.slice(2), share = places.splice(-2), [folder, module] = places;
 const gpu = await find_gpu(module);
 const adapter = await gpu.requestAdapter();
@@ -236,7 +246,7 @@ const device = new Device(gpu, await adapter.requestDevice({ requiredFeatures: w
 const writer = spawn(`${folder}/write_wgsl_jobs`, share, { stdio: ['pipe', 'pipe', 'inherit'] });
 const written = new Promise(resolve => writer.on('close', (code, signal) => resolve(code ?? signal)));
 let texts = 0, runs = 0, bad = 0, left_out = 0;
-for await (const line of createInterface({ input: writer.stdout })) {
+for await (const line of lines_of(writer.stdout)) {
     if (!line.startsWith('{')) {
         console.log(line);
         continue;

@@ -40,7 +40,8 @@ template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
 /// Returns the kernel that reduces rows of `columns` samples: the scalar one, if these do not fill a vector.
 inline DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     return with_tier(isa, [=](auto tier) {
-        return columns < tier.vector ? scalar::Tier::depth_kernel() : tier.depth_kernel();
+        const DepthKernel by_vectors = tier.depth_kernel();
+        return columns < tier.vector ? scalar::Tier::depth_kernel() : by_vectors;
     });
 }
 
