@@ -38,7 +38,7 @@ $(OUT)/scenes.wasm: $(compiled) | $(OUT)
 
 $(objects)/%.o: %.cpp $(here)/web.mk | $(objects)/include
 	@echo "    compiling $<"
-	@em++ $(flags) -MMD -c $< -o $@
+	@em++ $(flags) -MMD -MP -c $< -o $@
 
 # The host's headers must not be looked at, but for these.
 $(objects)/include:
