@@ -20,11 +20,6 @@ struct SpotLanes {
     Floats apex[3], radius, axis[3], cosine, sine, tolerance;
 };
 
-/// Returns |x| + |y| + |z| of vectors (x, y, z).
-LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
-    return abs(v[0]) + abs(v[1]) + abs(v[2]);
-}
-
 /// In each lane whose bit in `which` is set, stores as spots.apex and spots.radius the spot's bounding_sphere() in view
 /// space, in place of the sphere that the cone cuts.
 ///

@@ -42,6 +42,11 @@ LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, un
     load_spheres(after, images[0], images[1], images[2], images[3]);
 }
 
+/// Returns |x| + |y| + |z| of vectors (x, y, z).
+LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
+    return abs(v[0]) + abs(v[1]) + abs(v[2]);
+}
+
 /// Replaces vectors by their images: the transform's linear part times (v[0], v[1], v[2]).
 LIGHTBIN_INLINE void transform_vectors(const TransformLanes& transform, Floats (&v)[3]) {
     const Floats x = v[0], y = v[1], z = v[2];
@@ -54,7 +59,7 @@ LIGHTBIN_INLINE void transform_vectors(const TransformLanes& transform, Floats (
 LIGHTBIN_INLINE void transform_spheres(const TransformLanes& transform, Floats& x, Floats& y, Floats& z,
                                        Floats& radius) {
     Floats place[] = {x - transform.origin[0], y - transform.origin[1], z - transform.origin[2]};
-    const Floats distance = abs(place[0]) + abs(place[1]) + abs(place[2]);
+    const Floats distance = manhattan_length(place);
     const auto float_safe =
         both(less_equal(distance, transform.max_distance),
              both(less_equal(broadcast(float_safe_min), radius), less_equal(radius, broadcast(float_safe_max))));

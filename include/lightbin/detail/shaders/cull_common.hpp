@@ -29,8 +29,9 @@ constexpr unsigned cull_threads(CullPass pass) {
     return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::masks ? 128 : 64;
 }
 
-/// Returns where in a light's record its sphere begins: behind its rectangle, and behind its slices or, where tiles'
-/// cells are tested, the view depths of a spot or box.
+/// Returns the index of the first word of a light's sphere in its record in `scratch`. Before the sphere are the
+/// light's rectangle of tiles (two words) and, with clusters, its slices (one word) or, with a depth test of tiles, the
+/// least and the greatest view depth of a spot or box.
 inline std::uint32_t cull_sphere_at(const CullOptions& options) {
     if (options.slicing == Slicing::clusters) return 3;
     return options.depth_test && options.kind != CullKind::sphere ? 4 : 2;

@@ -105,7 +105,7 @@ inline View moved_aside(const View& view, double part) {
     return moved ? *moved : view;
 }
 
-/// Measures each of the options `measured` on grids of several tile sizes.
+/// Times a Binner with each of the options `measured`, and MaskBinners, on grids of several tile sizes.
 ///
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
 ///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
@@ -125,9 +125,9 @@ LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, con
     std::tuple<Binner<measured>...> binners;
     const auto for_each_binner = [&](auto visit) { std::apply([&](auto&... each) { (visit(each), ...); }, binners); };
     MaskBinner mask_binner;
-    // Builds the masks or lists of a plan, and keeps the time that this took in plan.build_ns if it is the plan's
-    // shortest so far. A plan's first call also counts how often pixels evaluate a light of its lists, or look at a
-    // word of its masks.
+    // Builds the masks or lists of a plan, with the image moved sideways by `aside` of its width. plan.build_ns becomes
+    // the time that this took, if it is less than before. If this is the plan's `first` build, it also counts the light
+    // evaluations of all pixels or, with masks, the words of masks that they look at.
     const auto build = [&](AdvicePlan& plan, double aside, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)

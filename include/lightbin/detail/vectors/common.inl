@@ -48,8 +48,8 @@ template <class Reals> void cross(const Reals (&a)[3], const Reals (&b)[3], Real
         to[i] = mul(a[(i + 1) % 3], b[(i + 2) % 3]) - mul(a[(i + 2) % 3], b[(i + 1) % 3]);
 }
 
-/// Loads as four vectors the vec4s, one for each lane, that begin `stride` bytes apart, the first one at `from`. Where
-/// the loop is unrolled, nothing is copied.
+/// Loads `lanes` vec4s, of which the first begins at `from` and each next one `stride` bytes later: all their first
+/// numbers into x, all their second ones into y, and so on. Unrolled, the loop compiles to loads alone, without a copy.
 template <class Reals>
 void load_vec4s(const void* from, std::size_t stride, Reals& x, Reals& y, Reals& z, Reals& w) {
     Sphere vec4s[lanes];
